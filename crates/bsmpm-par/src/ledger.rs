@@ -36,6 +36,7 @@ pub struct Ledger {
     history: CsvTable,
     steps: CsvTable,
     residuals: Option<CsvTable>, // if the case asks for it
+    water_flows: bool,           // they have a column of it
     profiles: Vec<CsvTable>,
     frames: Frames,
     store: Option<Store>, // once there is a checkpoint
@@ -100,6 +101,7 @@ impl Ledger {
         Ok(Self {
             profiles: profiles.collect::<Result<_, _>>()?,
             residuals: residuals.transpose()?,
+            water_flows: case.flow.is_some(),
             history: CsvTable::create(&path.join(HISTORY), &headings.history)?,
             steps: CsvTable::create(&path.join(STEPS), &headings.steps)?,
             frames: Frames::create(path)?,
@@ -280,7 +282,7 @@ impl Ledger {
     fn residuals(&mut self, step: u64, accepted: &Accepted) -> Result<(), Error> {
         let Some(table) = &mut self.residuals else { return Ok(()) };
         let report = &accepted.report;
-        let flows = report.water.is_some();
+        let flows = self.water_flows;
         let row = |iteration, method: Option<Method>, [energy, force, water]: [f64; 3]| {
             let method = method.map(|method| match method {
                 Method::QuasiNewton(QuasiNewton::Multisecant) => residuals::ResidualMethod::Multisecant,

@@ -56,3 +56,4 @@ pub use region::{Outline, Region, Volume};
 pub use seed::seed;
 pub use sketch::{Sketch, SketchedHistory};
 pub use source::{MAX_BYTES, load};
+pub use validate::HELD_WATER;

@@ -230,6 +230,7 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
         faces: flow.drains.iter().filter_map(face).collect(),
         inflows: flow.inflows.iter().map(inflow).collect(),
         suction: flow.suction,
+        held: false,
     })
 }
 

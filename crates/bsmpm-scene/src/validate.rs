@@ -25,6 +25,8 @@ mod stage;
 mod strip;
 mod water;
 
+pub use flow::HELD_WATER;
+
 use crate::case::{Analysis, Case, Gravity, Support};
 use crate::record::Record;
 use crate::report::Report;

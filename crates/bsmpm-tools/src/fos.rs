@@ -51,7 +51,8 @@ Loads that act at once grow over the whole run, and a stress at the start ([init
 With --stage every trial goes on from the state at the end of that stage instead, which is found once, with the whole
 strength and [initial]: one step more, and then the strength falls to 1/F in 10 equal parts of the factor, a nominal step
 each. Displacements are those since, added to the elastic one of what is there and acts then, loaded from zero; so the
-factor is the one by which the strength may fall after that stage, with the stress that the stages have left.
+factor is the one by which the strength may fall after that stage, with the stress that the stages have left. A case in
+which water flows has a factor so only: of that time, whose pore pressures stay.
 
 DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and fos_displacement.png (the first
 failed trial), and trials/. Trials that are there and were made from the same case by the same solver are kept.

@@ -58,7 +58,7 @@ use crate::solve::found::Found;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
 use crate::tensor::Vector;
-use crate::water::{ratio, work};
+use crate::water::{carried, work};
 use std::ops::AddAssign;
 
 /// Energy that went somewhere in a step, or in all steps so far, J; see the module.
@@ -323,12 +323,9 @@ fn add_water<K: Kinematics<D>, const D: usize>(
     (t, dt): (f64, f64),
 ) {
     let Problem { model, points, shape, .. } = *problem;
-    if let Some(gravity) = model.gravity.as_ref()
-        && let Some(work) = ratio::work::<K, D>((shape, points), problem.volume(), u)
-    {
-        let [before, after] = [t, t + dt].map(|t| gravity.grown(t));
-        flows.external.extend(work.iter().map(|work| 0.5 * (before + after) * work));
-        flows.integration.extend(work.iter().map(|work| -0.5 * (after - before) * work));
+    if let Some(work) = carried::work::<K, D>(model, (shape, points), problem.volume(), u, [t, t + dt]) {
+        flows.external.extend(work.iter().map(|[before, after]| 0.5 * (before + after)));
+        flows.integration.extend(work.iter().map(|[before, after]| -0.5 * (after - before)));
     }
     let (Some(before), Some(after)) = (model.still_water(t), model.still_water(t + dt)) else { return };
     let work = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| {

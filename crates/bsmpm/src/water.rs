@@ -6,6 +6,7 @@
 #![doc = include_str!("water.md")]
 
 pub mod ambient;
+pub mod carried;
 pub mod content;
 pub mod crossed;
 pub mod drain;
@@ -16,7 +17,6 @@ pub mod matrix;
 pub mod newton;
 pub mod nodes;
 pub mod observed;
-pub mod ratio;
 pub mod residual;
 pub mod retention;
 pub mod saved;

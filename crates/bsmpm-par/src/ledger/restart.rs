@@ -38,6 +38,7 @@ impl Ledger {
         manifest.warnings.extend(news.iter().filter(|warning| !older.contains(warning)).cloned());
         Ok(Self {
             residuals: tables.residuals,
+            water_flows: case.flow.is_some(),
             profiles: tables.profiles,
             history: tables.history,
             steps: tables.steps,

@@ -19,6 +19,8 @@ pub struct Flow {
     pub inflows: Vec<Inflow>,
     /// Pa  the largest suction at the start; without a level of `[water]` there is none
     pub suction: f64,
+    /// Every point keeps the pore pressure of the start.
+    pub held: bool,
 }
 
 /// A surface at which the pressure is given.

@@ -102,6 +102,13 @@ impl Case {
         factor.map_or(1.0, |factor| factor / self.strength_reduction.unwrap_or(1.0))
     }
 
+    /// Whether the water that flows is held as it is once the stages until the time `t` have begun: where strength is
+    /// divided, at the pressures of that time.
+    pub(crate) fn holds_water(&self, t: f64) -> bool {
+        let divides = |stage: &Stage| stage.strength_reduction.is_some() && self.has_begun(stage, t);
+        self.flow.as_ref().is_some_and(|flow| flow.held) || self.stages.iter().any(divides)
+    }
+
     /// When the stage of a name ends (s, or pseudo-time): as the next one begins. `"start"`, of what is before the
     /// first stage; `"end"`, of the run.
     pub fn end_of_stage(&self, name: &str) -> Option<f64> {

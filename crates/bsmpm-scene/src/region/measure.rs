@@ -11,8 +11,8 @@ const HALVINGS: u32 = 8;
 /// Pieces in which what has no corners of its own is looked at first.
 const PARTS: usize = 8;
 
-/// Volume of what is inside `bounds` (lower and upper corner of a cuboid) and where `covered` tells its length along the
-/// vertical line at a place, m³; the lines' places are chosen by the `shapes` that it is made of.
+/// Volume of what is inside `bounds` (lower and upper corner of a cuboid), m³; `covered`: its length along the vertical
+/// line at a place. The lines' places are chosen by the `shapes` that it is made of.
 pub(super) fn volume(shapes: &[&SolidShape], bounds: [[f64; 3]; 2], covered: impl Fn([f64; 2]) -> f64) -> f64 {
     let [lower, upper] = bounds;
     let sides = |axis: usize| [lower[axis], upper[axis]];

@@ -236,7 +236,7 @@ pub(super) static REDUCTION: Table = Table {
             Optional,
             "reduce at the end of the stage of that name, in the state that it leaves; \"start\": of what is before \
              the first stage; \"end\": of the run. Later stages do not begin; with unloaded = true: what is there \
-             then, from the start on",
+             then, from the start on. Water that flows rests: every point keeps the pore pressure of that time",
         ),
         key(
             "steps",

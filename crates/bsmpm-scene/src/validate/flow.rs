@@ -2,6 +2,7 @@
 
 mod shown;
 
+pub use shown::HELD_WATER;
 pub(super) use shown::check;
 
 use super::STANDARD_GRAVITY;
@@ -61,7 +62,7 @@ pub(super) fn read(
     let bulk = root.record("water").filter(|water| water.gives("bulk"));
     let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.number("bulk"))?;
     let suction = suction(root, soils.iter().flatten().any(|soil| soil.retention.is_some()), report)?;
-    Some(Some(Flow { unit_weight: unit_weight(root)?, bulk, soils, drains, inflows, suction }))
+    Some(Some(Flow { unit_weight: unit_weight(root)?, bulk, soils, drains, inflows, suction, held: false }))
 }
 
 /// Pa  the largest suction at the start.

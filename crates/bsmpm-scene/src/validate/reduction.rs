@@ -102,6 +102,9 @@ fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
         resets_displacements: false,
         follows: Vec::new(),
     };
+    // Water that flows rests from then on.
+    let rests = case.flow.is_some() && steps > 0;
+    case.stages.extend(rests.then(|| Stage { strength_reduction: Some(1.0), ..nothing.clone() }));
     case.stages.extend((1..=steps).map(|step| Stage {
         at: until + step as f64 * dt,
         strength_reduction: Some(1.0 + (factor - 1.0) * (step as f64 / steps as f64)),
@@ -133,6 +136,7 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     retain(&mut case.point_loads, &points);
     retain(&mut case.bodies, &bodies);
     case.stages.clear();
+    case.flow.iter_mut().for_each(|flow| flow.held = true);
     // Others may be of what is not there.
     case.histories.retain(|history| history.quantity == Quantity::MaxDisplacement { of: Counted::All });
     case.analysis.end = steps.max(1) as f64 * case.analysis.dt;

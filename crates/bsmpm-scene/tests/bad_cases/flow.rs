@@ -123,7 +123,7 @@ pub const FLOW: &[Row] = &[
         "[solver]",
         "[[stage]]\nat = \"1 day\"\nstrength_reduction = 1.2\n[solver]",
         "stage.0.strength_reduction",
-        "strength that changes is not shown",
+        "strength that changes while water flows is not shown",
     )
     .down(2),
     row(

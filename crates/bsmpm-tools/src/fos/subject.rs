@@ -51,6 +51,8 @@ pub(super) struct Subject {
     is_grown: bool,
     /// whether the case begins with a stress, which trials do not
     is_stressed: bool,
+    /// water flows until then, and rests in the trials
+    holds_water: bool,
     /// whether the case records it with a scale of its own, as E δ/(γ H²)
     pub is_scaled: bool,
     pub conditions: Conditions,
@@ -94,7 +96,8 @@ impl Subject {
         }
         let bytes = case::load(path)?;
         let mut set = set.to_vec();
-        let case = parsed(path, &bytes, &[&set[..], &reduction(from, 1.0)].concat())?;
+        let from_the_start = if stage.is_none() { reduction(from, 1.0) } else { Vec::new() };
+        let case = parsed(path, &bytes, &[&set[..], &from_the_start].concat())?;
         let until = |name: &str| until(&case, name).map(|until| (name.to_owned(), until));
         let stage = stage.map(until).transpose()?;
         let reasons = refusals(&case, stage.as_ref().map(|(_, until)| *until));
@@ -129,6 +132,7 @@ impl Subject {
             conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
         }
         let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
+        let holds_water = case.flow.is_some();
         Ok(Self {
             path,
             bytes,
@@ -140,6 +144,7 @@ impl Subject {
             column,
             is_grown,
             is_stressed,
+            holds_water,
             is_scaled,
             conditions,
         })
@@ -194,7 +199,8 @@ impl Subject {
                  displacements are those since, added to the elastic one"
             )
         });
-        staged.into_iter().chain(stiffened).chain(grown).chain(unstressed).collect()
+        let held = self.holds_water.then(|| bsmpm_scene::HELD_WATER.to_owned());
+        staged.into_iter().chain(held).chain(stiffened).chain(grown).chain(unstressed).collect()
     }
 
     /// The text of a trial's case as its `run.json` has it.
@@ -223,6 +229,10 @@ fn reduction(factor: f64, stiffness: f64) -> Vec<String> {
 /// What Young's moduli must be multiplied with so that the load strains no body by more than [`SMALL`], to three
 /// digits.
 fn stiffness(case: &Case) -> f64 {
+    // What consolidates does so by its own stiffness.
+    if case.flow.is_some() {
+        return 1.0;
+    }
     let up = case.grid.dims() - 1;
     let heights = case.bodies.iter().map(|body| body.region.corners().map(|corner| corner[up]));
     let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)]);
@@ -252,8 +262,7 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
     let is_plastic = case.materials.iter().any(|named| named.material.yields());
     let hardens = case.materials.iter().any(|named| named.material.hardens());
     let softens = case.materials.iter().any(|named| named.material.softens());
-    let has_amplitude = case.tractions.iter().map(|load| &load.amplitude).any(|rows| !rows.is_empty())
-        || case.point_loads.iter().any(|load| !load.amplitude.is_empty());
+    let has_amplitude = until.is_none() && amplitudes(case).any(|rows| !rows.is_empty());
     let never_full = until.is_none() && ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
         (
@@ -280,12 +289,13 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         (
             has_amplitude,
             "a load follows an amplitude: its factor would be that of whatever acts at `end`; give the load that is meant, \
-             with a ramp",
+             with a ramp, or --stage NAME of a stage at whose end it rests",
         ),
         (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
         (
             until.is_some_and(|until| still_grows(case, until)),
-            "a load still grows at the end of that stage, and would go on while the strength falls: let its ramp end before",
+            "a load still changes at the end of that stage, and would go on while the strength falls: let its ramp or amplitude \
+             end before",
         ),
         (
             level_moves(case, until),
@@ -316,13 +326,25 @@ fn until(case: &Case, name: &str) -> Result<f64, Error> {
     })
 }
 
-/// Whether a load that acts until a time does not act in full then.
+/// What the tractions, then the point loads are multiplied with in time.
+fn amplitudes(case: &Case) -> impl Iterator<Item = &[(f64, f64)]> {
+    let tractions = case.tractions.iter().map(|load| &load.amplitude[..]);
+    tractions.chain(case.point_loads.iter().map(|load| &load.amplitude[..]))
+}
+
+/// Whether a load that acts until a time does not act in full then, or changes later.
 fn still_grows(case: &Case, until: f64) -> bool {
     let before = case.just_before(until);
     let ends = |load: usize, ramp: f64| case.acts_since(Acting::Load(load), before).map_or(0.0, |since| since + ramp);
+    // From the last row before which it has another value; it begins with none.
+    let rests = |rows: &[(f64, f64)]| {
+        let values = std::iter::once(0.0).chain(rows.iter().map(|row| row.1));
+        rows.iter().zip(values).filter(|(row, before)| row.1 != *before).map(|(row, _)| row.0).fold(0.0, f64::max)
+    };
     let ramps = case.tractions.iter().map(|load| load.ramp).chain(case.point_loads.iter().map(|load| load.ramp));
-    let gravity = case.gravity.iter().map(|gravity| gravity.ramp);
-    ramps.enumerate().map(|(load, ramp)| ends(load, ramp)).chain(gravity).any(|end| end > until * (1.0 + 1e-9))
+    let loads = ramps.zip(amplitudes(case)).enumerate();
+    let ends = loads.map(|(load, (ramp, rows))| ends(load, ramp.max(rests(rows))));
+    ends.chain(case.gravity.iter().map(|gravity| gravity.ramp)).any(|end| end > until * (1.0 + 1e-9))
 }
 
 /// Whether the water rises or falls while strength is reduced.

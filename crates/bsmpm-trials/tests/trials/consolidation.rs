@@ -218,3 +218,103 @@ fn nearly_incompressible_clay_as_undrained_soil_takes_a_third_of_the_iterations(
     assert!(few < many / 3.0, "{few} {many}");
     assert!((undrained / load - 1.0).abs() < 0.12, "{undrained} {load}"); // coarse cells: 3 % with .25 m
 }
+
+/// A slope of 1 in 2 under water that is drawn down, and its strength then divided.
+const DRAWN_DOWN: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "consolidation"
+end = "4 d"
+dt = "12 h"
+[grid]
+lower = [0, 0]
+upper = [40, 12]
+cell = "2 m"
+order = "quadratic"
+[material.clay]
+model = "mohr-coulomb"
+young = "100 MPa"
+poisson = 0.3
+cohesion = "10 kPa"
+friction = 20
+dilation = 0
+unit_weight = "20 kN/m3"
+drainage = "coupled"
+porosity = 0.4
+permeability = "1e-9 m/s"
+[[body]]
+material = "clay"
+polygon = [[0, 0], [40, 0], [40, 2], [28, 2], [12, 10], [0, 10]]
+points_per_cell = 3
+[gravity]
+acceleration = [0, -9.81]
+[initial]
+k0 = 0.7
+[water]
+level_path = [[0, 10], ["2 d", 8]]
+[boundary]
+bottom = "fixed"
+left = "roller"
+right = "roller"
+[stabilisation]
+method = "consistent-f-bar"
+[[drain]]
+surface = true
+[strength_reduction]
+factor = 1.4
+stage = "end"
+steps = 3
+[[history]]
+quantity = "max-displacement"
+[[history]]
+quantity = "excess-pressure"
+at = [12.0, 4.0]
+[output]
+every_steps = 100
+"#;
+
+/// The pressures of the end of the consolidation stay, to the bit, and act: nothing moves before strength falls, and
+/// where the excess has left it is the slope of still water (but for the state by k0, which goes to equilibrium on
+/// another way). On two ranks, and in parts, the same.
+#[test]
+fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
+    let until = 4.0 * 86400.0;
+    let still = changed(DRAWN_DOWN, "level_path = [[0, 10], [\"2 d\", 8]]", "level = 10");
+    let still = changed(&still, "factor = 1.4", "factor = 2.0");
+    // What the state by k0 lacks to equilibrium makes pressures, too: they have to leave.
+    let still = changed(&still, "1e-9 m/s", "1e-6 m/s");
+    let given = ["drainage = \"coupled\"\n", "porosity = 0.4\n", "permeability = \"1e-6 m/s\"\n"]
+        .iter()
+        .fold(changed(&still, "[[drain]]\nsurface = true\n", ""), |case, part| changed(&case, part, ""));
+    let given = changed(&given, "\"consolidation\"\nend = \"4 d\"\ndt = \"12 h\"", "\"quasi-static\"\nsteps = 4");
+    let given = changed(&given, "excess-pressure", "pore-pressure");
+    let rest = changed(DRAWN_DOWN, "factor = 1.4", "factor = 1.0001");
+    let scratch = Scratch::new();
+    let mut told = Vec::new();
+    let runs = [("one", 1), ("two", 2), ("still", 1), ("given", 1), ("rest", 1)];
+    for ((name, ranks), case) in runs.into_iter().zip([DRAWN_DOWN, DRAWN_DOWN, &still, &given, &rest]) {
+        scratch.write("case.toml", case);
+        told.push(scratch.mpirun(ranks, &["case.toml", "-o", name]).expect(0).stderr);
+    }
+    assert!(told[1].contains("pore pressures stay") && !told[3].contains("pore pressures stay"), "{}", told[0]);
+    let tables = runs.map(|(name, _)| history(&scratch.path(name)));
+    let moved = [0, 1, 2, 3, 4].map(|k| *tables[k].get("max-displacement").unwrap().last().unwrap());
+    println!("moved {moved:?} m");
+    assert!(moved[4] < 1e-2 * moved[0] && (moved[2] / moved[3] - 1.0).abs() < 1e-3, "{moved:?}");
+    assert!((moved[1] / moved[0] - 1.0).abs() < 1e-4, "{moved:?}");
+    let (time, pressure) = (tables[0].get("time").unwrap(), tables[0].get("excess-pressure").unwrap());
+    let left = at(&tables[0], "excess-pressure", until);
+    assert!(left > 5e3, "{left}");
+    let held = time.iter().zip(pressure).filter(|(t, _)| **t >= until).map(|(_, pressure)| *pressure);
+    assert!(
+        held.clone().count() == 5 && held.clone().all(|pressure| pressure == left),
+        "{:?}",
+        held.collect::<Vec<_>>()
+    );
+    scratch.write("case.toml", DRAWN_DOWN);
+    let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+    scratch.mpirun(1, &[&part[..], &["--max-steps", "10"]].concat()).expect(75);
+    scratch.mpirun(1, &part).expect(0);
+    let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+    assert!(text("one") == text("part"));
+}

@@ -18,8 +18,8 @@ use crate::step::apart::Apart;
 use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
 use crate::tensor::Vector;
+use crate::water::carried;
 use crate::water::nodes::Pores;
-use crate::water::ratio;
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
@@ -135,7 +135,7 @@ impl<const D: usize> Nodes<D> {
             inertia.moving = contacts.moving(&inertia.v, dt);
         }
         let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
-        if let Some(force) = ratio::force(model, (shape, points), volume, t + dt) {
+        if let Some(force) = carried::force(model, (shape, points), volume, t + dt) {
             f_ext.iter_mut().zip(halo.sum(&force)).for_each(|(all, force)| *all += force);
         }
         let window = (&model.grid, &active[..]);

@@ -20,6 +20,8 @@ pub struct Flow<const D: usize> {
     pub inflows: Vec<Inflow<D>>,
     /// Pa  the largest suction above still water at the start, where soils keep water under suction
     pub suction: f64,
+    /// no pressure is an unknown: every point keeps the one that it has
+    pub held: bool,
 }
 
 impl<const D: usize> Flow<D> {

@@ -82,16 +82,17 @@ pub struct Pores<const D: usize> {
 }
 
 impl<const D: usize> Pores<D> {
-    /// Of the step from `t` to `t + dt`; `None` where no water flows. Fails where a drain is on tight material.
+    /// Of the step from `t` to `t + dt`; `None` where no water flows, or its pressures are held. Fails where a drain is
+    /// on tight material.
     pub fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
         (full, points): (&Shape<D>, &Points<D>),
         (t, dt): (f64, f64),
         halo: &dyn Halo,
     ) -> Result<Option<Self>, StepError> {
-        let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
-            return Ok(None);
-        };
+        let flows = |water: &'_ Water<D>| water.flow.as_ref().is_some_and(|flow| !flow.held);
+        let Some(water) = model.water.as_ref().filter(|water| flows(water)) else { return Ok(None) };
+        let Some(flow) = &water.flow else { return Ok(None) };
         let (shape, end) = (full.lowered_with_derivatives(&model.grid, points), t + dt);
         let wet: Vec<Option<Wet<D>>> =
             (0..points.len()).map(|p| Wet::of(model, (water, flow), points, p, (t, end))).collect();

@@ -109,9 +109,9 @@ impl<'a, const D: usize> PoreWater<'a, D> {
 
     /// What the points have gained of water since the start and what has left the ground, over the larger of what
     /// crossed its surface and what the points have taken in and given off, added; a billionth of the pores counts for
-    /// nothing. 0 where no water is lost, `None` where none flows. One reduction.
+    /// nothing. 0 where no water is lost, `None` where none flows or its pressures are held. One reduction.
     pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
-        self.water.flow.as_ref()?;
+        self.water.flow.as_ref().filter(|flow| !flow.held)?;
         let pores: Exact = (0..self.points.len())
             .map(|p| self.flow(p).map_or(0.0, |(_, soil)| self.points.volume[p] * soil.porosity))
             .collect();

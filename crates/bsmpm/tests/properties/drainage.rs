@@ -55,6 +55,7 @@ fn scene(order: usize, law: PermeabilityLaw, [from, to]: [Vector<2>; 2], given: 
         faces: Vec::new(),
         inflows: vec![Inflow { points, normals, rate: Course(vec![(0.0, 2e-7), (2.0 * DT, 4e-7)]), runs_off: false }],
         suction: 0.0,
+        held: false,
     };
     scene.model.water = Some(Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) });
     scene

@@ -88,6 +88,7 @@ fn ring(fineness: usize, inner: Option<f64>) -> Plane {
         faces: Vec::new(),
         inflows: if inner.is_none() { vec![inflow()] } else { Vec::new() },
         suction: 0.0,
+        held: false,
     };
     scene.model.water = Some(Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) });
     scene

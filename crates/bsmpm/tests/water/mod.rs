@@ -45,7 +45,8 @@ pub fn flowing(law: PermeabilityLaw) -> Water<2> {
     let permeability = Permeability { along: at(WEIGHT / M, WEIGHT / M), law };
     let soil = Soil { porosity: 0.6, permeability: Some(permeability), retention: None };
     let (soils, bulk) = (vec![Some(soil)], f64::INFINITY);
-    let flow = Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new(), suction: 0.0 };
+    let flow =
+        Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new(), suction: 0.0, held: false };
     Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) }
 }
 

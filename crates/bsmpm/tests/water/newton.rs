@@ -62,6 +62,7 @@ fn wet<K: Kinematics<D>, const D: usize>(
         faces: vec![DrainedFace { axis: 0, upper: false, given: Given::Pressure(Course(vec![(0.0, 5.0)])) }],
         inflows: vec![inflow],
         suction: 0.0,
+        held: false,
     };
     scene.model.water = Some(Water { unit_weight: 10.0, ambient: Ambient::Level(vec![(0.0, 0.9)]), flow: Some(flow) });
     scene

@@ -1,0 +1,63 @@
+//! Pore pressure that points carry: a share r_u of the weight above them at the start; and the excess of water that
+//! flowed, held as it is while strength is divided.
+
+use crate::grid::{Contributions, Shape, transfer};
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::points::Points;
+use crate::tensor::{Tensor, Vector};
+
+/// N  what the pressure does to the nodes: sum_p V0 J p div N_Ip by the place at the start of the step, at time `t`;
+/// `volume` (m^D) is what points weigh in integrals of the stress.
+pub fn force<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    (shape, points): (&Shape<D>, &Points<D>),
+    volume: &[f64],
+    t: f64,
+) -> Option<Contributions> {
+    let carried = pressures(model, points, t)?;
+    let flux = |p: usize| {
+        let pressed = volume[p] * points.F.at(p).determinant() * carried[p];
+        K::working(&(Tensor::identity() * pressed))
+    };
+    Some(transfer::divergence::<K, D>((shape, &points.x), flux))
+}
+
+/// J  work of the pressures of the times `t` on the displacements `u` (m, nodal), of every point.
+pub fn work<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    (shape, points): (&Shape<D>, &Points<D>),
+    volume: &[f64],
+    u: &[f64],
+    t: [f64; 2],
+) -> Option<Vec<[f64; 2]>> {
+    let [before, after] = t.map(|t| pressures(model, points, t));
+    let (before, after) = (before?, after?);
+    let x: &[Vector<D>] = &points.x;
+    Some(transfer::gradients::<K, D, _>((shape, x), u, |p, gradient| {
+        let dilates = volume[p] * points.F.at(p).determinant() * K::gradient::<f64>(&gradient).trace();
+        [before[p] * dilates, after[p] * dilates]
+    }))
+}
+
+/// Pa  of every point, at time `t`: the share of the weight, as far as gravity has grown; or what the excess that is
+/// held presses with. `None` where points carry neither.
+fn pressures<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: f64) -> Option<Vec<f64>> {
+    let shares = points.carried_pressure.as_ref().zip(model.gravity.as_ref());
+    if let Some((shares, gravity)) = shares {
+        let grown = gravity.grown(t);
+        return Some(shares.iter().map(|share| grown * share).collect());
+    }
+    let water = model.water.as_ref()?;
+    let flow = water.flow.as_ref().filter(|flow| flow.held)?;
+    let still = model.still_water(t).filter(|_| flow.retains());
+    let of = |p: usize| {
+        let x = &points.x[p];
+        let Some(soil) = &flow.soils[usize::from(points.material[p])] else { return 0.0 };
+        let excess = points.pore_pressure.as_ref().map_or_else(|| water.excess_at_start(x), |excess| excess[p]);
+        let whole = if flow.retains() { excess + water.still_pressure(x, t) } else { excess };
+        let borne = still.as_ref().map_or(0.0, |still| still.pressure(x));
+        soil.retained(whole, water.unit_weight).effective * whole - borne
+    };
+    Some((0..points.len()).map(of).collect())
+}
