@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Keys with which a run may go on changed: they say how far, how finely and how it is told, not what is solved.
-const FREE: [&str; 15] = [
+const FREE: [&str; 16] = [
     "title",
     "analysis.dt",
     "analysis.steps",
@@ -27,9 +27,10 @@ const FREE: [&str; 15] = [
     "analysis.end",
     DIVIDED[0],
     DIVIDED[1],
+    DIVIDED[2],
 ];
 /// Keys that nothing has been solved with before the stage of `[strength_reduction]` has ended.
-const DIVIDED: [&str; 2] = ["strength_reduction.factor", "strength_reduction.steps"];
+const DIVIDED: [&str; 3] = ["strength_reduction.factor", "strength_reduction.steps", "strength_reduction.drainage"];
 /// The key that says which.
 const STAGE: &str = "strength_reduction.stage";
 /// Keys among them that belong to the tables of a run, whose columns stay.

@@ -43,8 +43,8 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
         extent: case.solver.background_cells,
     });
     let (grid, materials) = (grid(case)?, case.materials_at(t));
-    let held = case.holds_water(t);
-    let flow = surfaces::flow::<K, D>(case, &grid).map(|flow| Flow { held, ..flow });
+    let motion = case.water_at(t);
+    let flow = surfaces::flow::<K, D>(case, &grid).map(|flow| Flow { motion, ..flow });
     Ok(Model {
         materials: materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,

@@ -8,7 +8,7 @@ use bsmpm::grid::Grid;
 use bsmpm::kinematics::{Axisymmetric, Kinematics};
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow, Permeability, Soil};
+use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow, Motion, Permeability, Soil};
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step
 /// to step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
@@ -230,7 +230,7 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
         faces: flow.drains.iter().filter_map(face).collect(),
         inflows: flow.inflows.iter().map(inflow).collect(),
         suction: flow.suction,
-        held: false,
+        motion: Motion::Flows,
     })
 }
 

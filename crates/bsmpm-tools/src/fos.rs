@@ -52,7 +52,7 @@ With --stage every trial goes on from the state at the end of that stage instead
 strength and [initial]: one step more, and then the strength falls to 1/F in 10 equal parts of the factor, a nominal step
 each. Displacements are those since, added to the elastic one of what is there and acts then, loaded from zero; so the
 factor is the one by which the strength may fall after that stage, with the stress that the stages have left. A case in
-which water flows has a factor so only: of that time, whose pore pressures stay.
+which water flows has a factor so only: of that time, whose pore pressures stay; with --undrained the water stays instead.
 
 DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and fos_displacement.png (the first
 failed trial), and trials/. Trials that are there and were made from the same case by the same solver are kept.
@@ -81,6 +81,10 @@ pub struct FosArguments {
     /// "end": of the run, as for a case that begins with `[initial]`. Factors are at least 1 then
     #[arg(long, value_name = "NAME")]
     pub stage: Option<String>,
+    /// The water that has flowed until then stays where it is while the strength falls, and its pressure follows the
+    /// strain, as in a sudden failure; without it every point keeps its pore pressure, as in a slow one
+    #[arg(long, requires = "stage")]
+    pub undrained: bool,
     /// The width of the bands
     #[arg(long, value_name = "WIDTH", default_value_t = 0.02)]
     pub width: f64,
@@ -144,7 +148,8 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     let (plan, jobs) = (arguments.plan()?, command::jobs(arguments.jobs, &command)?);
     // Whatever the number of jobs: threads in BLAS would sum in another order.
     let solver = SolverProgram { command: &command, side_by_side: true };
-    let subject = Subject::read(&arguments.case, &arguments.set, (plan.from, arguments.stage.as_deref()))?;
+    let stage = (arguments.stage.as_deref(), arguments.undrained);
+    let subject = Subject::read(&arguments.case, &arguments.set, (plan.from, stage))?;
     solver.check()?;
     let output = arguments.directory();
     launch::make(&output)?;

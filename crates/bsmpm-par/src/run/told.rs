@@ -4,6 +4,7 @@ use super::Run;
 use crate::checkpoint::Outlet;
 use bsmpm::control::Accepted;
 use bsmpm::kinematics::Kinematics;
+use bsmpm::water::flow::Motion;
 use bsmpm_io::manifest::ManifestOutflow;
 use bsmpm_ranks::simulation::Simulation;
 
@@ -100,6 +101,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// A drain or an inflow most of which has no ground near lets nothing through there.
     pub(super) fn tell_drains(&mut self, accepted: &Accepted) {
         let (Some(water), t) = (&accepted.report.water, accepted.t) else { return };
+        let model = &self.simulation.model;
+        let motion = model.water.as_ref().and_then(|water| water.flow.as_ref()).map(|flow| flow.motion);
+        if motion != Some(Motion::Flows) {
+            return;
+        }
         let wanted = self.simulation.model.surfaces().water;
         let points: Vec<usize> = wanted.iter().map(|points| points.len()).collect();
         let of_strips = 3 * self.simulation.model.boundary.strips.len();

@@ -1,7 +1,7 @@
 //! Water that flows.
 
 use super::{Case, Face, Plate, Site};
-use bsmpm::water::flow::{Course, Given, Soil};
+use bsmpm::water::flow::{Course, Given, Motion, Soil};
 
 /// Pore water whose excess pressure is an unknown.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,8 +19,10 @@ pub struct Flow {
     pub inflows: Vec<Inflow>,
     /// Pa  the largest suction at the start; without a level of `[water]` there is none
     pub suction: f64,
-    /// Every point keeps the pore pressure of the start.
-    pub held: bool,
+    /// What the water does.
+    pub motion: Motion,
+    /// The same while the strength of the start is divided.
+    pub divided: Motion,
 }
 
 /// A surface at which the pressure is given.

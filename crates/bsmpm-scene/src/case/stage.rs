@@ -2,6 +2,7 @@
 
 use super::{Body, Case, Face, NamedMaterial, Support};
 use bsmpm::boundary::Contact;
+use bsmpm::water::flow::Motion;
 use std::ops::Range;
 
 /// What changes at a time, between two steps.
@@ -102,11 +103,11 @@ impl Case {
         factor.map_or(1.0, |factor| factor / self.strength_reduction.unwrap_or(1.0))
     }
 
-    /// Whether the water that flows is held as it is once the stages until the time `t` have begun: where strength is
-    /// divided, at the pressures of that time.
-    pub(crate) fn holds_water(&self, t: f64) -> bool {
+    /// What water that may flow does once the stages until the time `t` have begun: it rests where strength is divided.
+    pub(crate) fn water_at(&self, t: f64) -> Motion {
+        let Some(flow) = &self.flow else { return Motion::Flows };
         let divides = |stage: &Stage| stage.strength_reduction.is_some() && self.has_begun(stage, t);
-        self.flow.as_ref().is_some_and(|flow| flow.held) || self.stages.iter().any(divides)
+        if self.stages.iter().any(divides) { flow.divided } else { flow.motion }
     }
 
     /// When the stage of a name ends (s, or pseudo-time): as the next one begins. `"start"`, of what is before the

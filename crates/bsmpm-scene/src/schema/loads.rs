@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
-use crate::words::{Axis, Base, Components, Settled, Side, Start, Support, Word};
+use crate::words::{Axis, Base, Components, Drainage, Settled, Side, Start, Support, Word};
 use std::ops::Bound::Included;
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
@@ -236,7 +236,14 @@ pub(super) static REDUCTION: Table = Table {
             Optional,
             "reduce at the end of the stage of that name, in the state that it leaves; \"start\": of what is before \
              the first stage; \"end\": of the run. Later stages do not begin; with unloaded = true: what is there \
-             then, from the start on. Water that flows rests: every point keeps the pore pressure of that time",
+             then, from the start on. Water that flows rests: see `drainage`",
+        ),
+        key(
+            "drainage",
+            Choice(Drainage::WORDS),
+            Default("\"given\""),
+            "of water that has flowed until the end of that stage: given: every point keeps its pore pressure, a failure so \
+             slow that it drains; undrained: the water stays where it is, and its pressure follows the strain, a sudden one",
         ),
         key(
             "steps",

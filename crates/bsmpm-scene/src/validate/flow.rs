@@ -15,7 +15,7 @@ use crate::record::Record;
 use crate::region::{Region, skin};
 use crate::report::Report;
 use crate::words::{Drainage, Side};
-use bsmpm::water::flow::{Course, Given, Permeability, PermeabilityLaw, Soil};
+use bsmpm::water::flow::{Course, Given, Motion, Permeability, PermeabilityLaw, Soil};
 use bsmpm::water::retention::{Curve, Measured, Retention};
 
 /// N/m3  of water, unless a case gives it.
@@ -62,7 +62,16 @@ pub(super) fn read(
     let bulk = root.record("water").filter(|water| water.gives("bulk"));
     let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.number("bulk"))?;
     let suction = suction(root, soils.iter().flatten().any(|soil| soil.retention.is_some()), report)?;
-    Some(Some(Flow { unit_weight: unit_weight(root)?, bulk, soils, drains, inflows, suction, held: false }))
+    Some(Some(Flow {
+        unit_weight: unit_weight(root)?,
+        bulk,
+        soils,
+        drains,
+        inflows,
+        suction,
+        motion: Motion::Flows,
+        divided: Motion::Held,
+    }))
 }
 
 /// Pa  the largest suction at the start.

@@ -5,7 +5,9 @@ use crate::case::{Acting, Case, Counted, Gravity, PointLoad, Quantity, Stage, Tr
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
+use crate::words::Drainage;
 use bsmpm::model::Regime;
+use bsmpm::water::flow::Motion;
 
 /// Parts of a step by which stages lie apart.
 const APART: f64 = 1e-6;
@@ -69,6 +71,7 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         table.error("stage", format!("stage.{number} divides the strength, too: leave one of them out"), report);
     }
     divisible(case, table, report);
+    rest(case, table, report);
     if !case.checks.is_empty() {
         report.note("check", "none", "strength_reduction.stage: they are of the case as it is");
         case.checks.clear();
@@ -80,6 +83,24 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     }
     let end = case.analysis.end;
     case.output.times.retain(|t| *t <= end);
+}
+
+/// What water that flows until then does.
+fn rest(case: &mut Case, table: &Record, report: &mut Report<'_>) {
+    let drainage = table.word::<Drainage>("drainage");
+    match (drainage, &mut case.flow) {
+        (Some(Drainage::Undrained), Some(flow)) => flow.divided = Motion::Undrained,
+        (Some(Drainage::Undrained), None) => {
+            let message = "no water flows that could stay: give a material drainage = \"coupled\" or \"undrained\"";
+            table.error("drainage", message, report);
+        }
+        (Some(Drainage::Coupled), _) => {
+            let message = "\"coupled\" would be a race between the water and the strength: take \"given\" for a failure so \
+                           slow that it drains, or \"undrained\"";
+            table.error("drainage", message, report);
+        }
+        _ => {}
+    }
 }
 
 /// Goes on from `until` with one step more of whole strength, and then with so many of less and less.
@@ -136,7 +157,7 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     retain(&mut case.point_loads, &points);
     retain(&mut case.bodies, &bodies);
     case.stages.clear();
-    case.flow.iter_mut().for_each(|flow| flow.held = true);
+    case.flow.iter_mut().for_each(|flow| flow.motion = Motion::Held);
     // Others may be of what is not there.
     case.histories.retain(|history| history.quantity == Quantity::MaxDisplacement { of: Counted::All });
     case.analysis.end = steps.max(1) as f64 * case.analysis.dt;

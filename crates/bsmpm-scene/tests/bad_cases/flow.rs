@@ -107,6 +107,13 @@ pub const FLOW: &[Row] = &[
     row("[solver]", "[strength_reduction]\nfactor = 1.2\n[solver]", "strength_reduction", "is not shown to be right"),
     row(
         "[solver]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\ndrainage = \"coupled\"\n[solver]",
+        "strength_reduction.drainage",
+        "take \"given\"",
+    )
+    .down(3),
+    row(
+        "[solver]",
         "[[stage]]\nat = \"1 day\"\nboundary = { left = \"fixed\" }\n[solver]",
         "stage.0.boundary",
         "faces that change are not shown",

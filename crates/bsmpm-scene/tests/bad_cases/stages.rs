@@ -26,6 +26,13 @@ pub const STAGES: &[Row] = &[
     ),
     row("factor = 1.25", "factor = 1.25\nstage = \"filled\"", "strength_reduction.stage", "needs a quasi-static")
         .down(1),
+    row(
+        "factor = 1.25",
+        "factor = 1.25\nstage = \"end\"\ndrainage = \"undrained\"",
+        "strength_reduction.drainage",
+        "no water flows that could stay",
+    )
+    .down(2),
     row("factor = 1.25", "factor = 1.25\nsteps = 1001", "strength_reduction.steps", "0 <= steps <= 1000").down(1),
     row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
     row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),

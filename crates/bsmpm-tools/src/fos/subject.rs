@@ -21,6 +21,8 @@ const FACTOR: &str = "strength_reduction.factor";
 const UNLOADED: &str = "strength_reduction.unloaded";
 /// The key that says at the end of which stage.
 const STAGE: &str = "strength_reduction.stage";
+/// Water that stays where it is.
+const UNDRAINED: &str = "strength_reduction.drainage=undrained";
 /// What ends a run there, with a checkpoint.
 const UNTIL: [&str; 2] = ["strength_reduction.steps=0", "output.checkpoint.wall=\"15 min\""];
 /// Strain by which a load may change the geometry: (weight of the body's height + traction)/E. Beyond, the branch after
@@ -51,7 +53,7 @@ pub(super) struct Subject {
     is_grown: bool,
     /// whether the case begins with a stress, which trials do not
     is_stressed: bool,
-    /// water flows until then, and rests in the trials
+    /// water flows until then; in the trials it rests, and has the pressures of that time
     holds_water: bool,
     /// whether the case records it with a scale of its own, as E δ/(γ H²)
     pub is_scaled: bool,
@@ -83,14 +85,18 @@ pub(super) struct Conditions {
 }
 
 impl Subject {
-    /// The case at `path` with overrides, to be searched from the factor `from` on, at the end of a `stage` or as the
-    /// body is drawn.
+    /// The case at `path` with overrides, to be searched from the factor `from` on, at the end of a `stage`, there without
+    /// drainage or with the pore pressures of that time, or as the body is drawn.
     ///
     /// # Errors
     /// [`Error::Missing`] for a file that cannot be read, [`Error::BadCase`] with all errors of the case,
     /// [`Error::NoFactor`] with all reasons why it has no factor of safety, [`Error::Usage`] for overrides of the
     /// factor.
-    pub fn read(path: &Path, set: &[String], (from, stage): (f64, Option<&str>)) -> Result<Self, Error> {
+    pub fn read(
+        path: &Path,
+        set: &[String],
+        (from, (stage, undrained)): (f64, (Option<&str>, bool)),
+    ) -> Result<Self, Error> {
         if set.iter().any(|set| set.trim_start().starts_with("strength_reduction")) {
             return Err(Error::Usage { reason: format!("--set {FACTOR}: the factor is what the search sets") });
         }
@@ -121,6 +127,9 @@ impl Subject {
         if let Some((name, _)) = &stage {
             set.push(format!("{STAGE}={name:?}"));
         }
+        if undrained {
+            set.push(UNDRAINED.to_owned());
+        }
         let trial = |factor: f64| [&set[..], &reduction(factor, conditions.stiffness)].concat();
         let end = |factor: f64, further: &[String]| {
             parsed(path, &bytes, &[&trial(factor)[..], further].concat()).map(|case| case.analysis.end)
@@ -132,7 +141,7 @@ impl Subject {
             conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
         }
         let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
-        let holds_water = case.flow.is_some();
+        let holds_water = case.flow.is_some() && !undrained;
         Ok(Self {
             path,
             bytes,

@@ -24,6 +24,7 @@ pub(super) fn outcome(batch: &Batch, order: &RunOrder) -> Outcome {
         from: RANGE[0],
         to: RANGE[1],
         stage: None,
+        undrained: false,
         width: WIDTH,
         jobs: Some(1),
         set: order.set.clone(),

@@ -259,6 +259,7 @@ right = "roller"
 [stabilisation]
 method = "consistent-f-bar"
 [[drain]]
+name = "ground"
 surface = true
 [strength_reduction]
 factor = 1.4
@@ -269,6 +270,9 @@ quantity = "max-displacement"
 [[history]]
 quantity = "excess-pressure"
 at = [12.0, 4.0]
+[[history]]
+quantity = "water-outflow"
+drain = "ground"
 [output]
 every_steps = 100
 "#;
@@ -285,14 +289,18 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
     let still = changed(&still, "1e-9 m/s", "1e-6 m/s");
     let given = ["drainage = \"coupled\"\n", "porosity = 0.4\n", "permeability = \"1e-6 m/s\"\n"]
         .iter()
-        .fold(changed(&still, "[[drain]]\nsurface = true\n", ""), |case, part| changed(&case, part, ""));
+        .fold(changed(&still, "[[drain]]\nname = \"ground\"\nsurface = true\n", ""), |case, part| {
+            changed(&case, part, "")
+        });
     let given = changed(&given, "\"consolidation\"\nend = \"4 d\"\ndt = \"12 h\"", "\"quasi-static\"\nsteps = 4");
     let given = changed(&given, "excess-pressure", "pore-pressure");
+    let given = changed(&given, "[[history]]\nquantity = \"water-outflow\"\ndrain = \"ground\"\n", "");
+    let sudden = changed(DRAWN_DOWN, "stage = \"end\"", "stage = \"end\"\ndrainage = \"undrained\"");
     let rest = changed(DRAWN_DOWN, "factor = 1.4", "factor = 1.0001");
     let scratch = Scratch::new();
     let mut told = Vec::new();
-    let runs = [("one", 1), ("two", 2), ("still", 1), ("given", 1), ("rest", 1)];
-    for ((name, ranks), case) in runs.into_iter().zip([DRAWN_DOWN, DRAWN_DOWN, &still, &given, &rest]) {
+    let runs = [("one", 1), ("two", 2), ("still", 1), ("given", 1), ("rest", 1), ("sudden", 2)];
+    for ((name, ranks), case) in runs.into_iter().zip([DRAWN_DOWN, DRAWN_DOWN, &still, &given, &rest, &sudden]) {
         scratch.write("case.toml", case);
         told.push(scratch.mpirun(ranks, &["case.toml", "-o", name]).expect(0).stderr);
     }
@@ -311,6 +319,11 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
         "{:?}",
         held.collect::<Vec<_>>()
     );
+    // Without drainage nothing leaves, and the pressures follow the strain.
+    let sudden = |name: &str| tables[5].get(name).unwrap().last().copied().unwrap();
+    assert!(!told[5].contains("pore pressures stay"), "{}", told[5]);
+    assert_eq!(sudden("water-outflow"), at(&tables[5], "water-outflow", until));
+    assert!((sudden("excess-pressure") / left - 1.0).abs() > 1e-2, "{} {left}", sudden("excess-pressure"));
     scratch.write("case.toml", DRAWN_DOWN);
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
     scratch.mpirun(1, &[&part[..], &["--max-steps", "10"]].concat()).expect(75);

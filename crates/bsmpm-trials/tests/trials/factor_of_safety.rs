@@ -29,6 +29,7 @@ fn of_stage(
         from,
         to,
         stage: stage.map(str::to_owned),
+        undrained: false,
         width,
         jobs: Some(jobs),
         set: set.iter().map(|&set| set.to_owned()).collect(),

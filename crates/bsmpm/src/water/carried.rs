@@ -6,6 +6,7 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::points::Points;
 use crate::tensor::{Tensor, Vector};
+use crate::water::flow::Motion;
 
 /// N  what the pressure does to the nodes: sum_p V0 J p div N_Ip by the place at the start of the step, at time `t`;
 /// `volume` (m^D) is what points weigh in integrals of the stress.
@@ -49,7 +50,7 @@ fn pressures<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
         return Some(shares.iter().map(|share| grown * share).collect());
     }
     let water = model.water.as_ref()?;
-    let flow = water.flow.as_ref().filter(|flow| flow.held)?;
+    let flow = water.flow.as_ref().filter(|flow| flow.motion == Motion::Held)?;
     let still = model.still_water(t).filter(|_| flow.retains());
     let of = |p: usize| {
         let x = &points.x[p];

@@ -14,7 +14,7 @@ use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
 use crate::tensor::Vector;
-use crate::water::flow::{Flow, Given};
+use crate::water::flow::{Flow, Given, Motion};
 
 /// Conductance of a drain over that of the soil of a cell, k/(gamma_w h).
 ///
@@ -81,8 +81,9 @@ impl Drainage {
         let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
             return Ok(Self::default());
         };
-        if flow.surfaces().next().is_none() {
-            return Ok(Self::default());
+        let of = [flow.drains.len(), flow.inflows.len()];
+        if of == [0; 2] || flow.motion != Motion::Flows {
+            return Ok(Self { of, ..Self::default() });
         }
         let (grid, offsets) = (&model.grid, model.grid.lowered_offsets());
         let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo).water;
@@ -115,7 +116,7 @@ impl Drainage {
                 });
             }
         }
-        Ok(Self { offsets, of: [flow.drains.len(), flow.inflows.len()], outlets })
+        Ok(Self { offsets, of, outlets })
     }
 
     /// Adds what leaves the ground in the step under the excess pressures `p` (Pa, nodal, one number a node) to the

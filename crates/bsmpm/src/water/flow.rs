@@ -20,8 +20,20 @@ pub struct Flow<const D: usize> {
     pub inflows: Vec<Inflow<D>>,
     /// Pa  the largest suction above still water at the start, where soils keep water under suction
     pub suction: f64,
-    /// no pressure is an unknown: every point keeps the one that it has
-    pub held: bool,
+    /// what the water does
+    pub motion: Motion,
+}
+
+/// What water does that may flow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Motion {
+    /// It flows.
+    #[default]
+    Flows,
+    /// It stays where it is: nothing flows, crosses a surface or is given, and the pressure follows the strain.
+    Undrained,
+    /// No pressure is an unknown: every point keeps the one that it has.
+    Held,
 }
 
 impl<const D: usize> Flow<D> {
@@ -53,6 +65,9 @@ impl<const D: usize> Flow<D> {
     /// m/s  of a material, along the axes, where it has become `J` times the volume of the start; `None` where nothing
     /// flows
     pub fn permeability(&self, material: u16, J: f64) -> Option<Vector<D>> {
+        if self.motion != Motion::Flows {
+            return None;
+        }
         let soil = self.soils[usize::from(material)].as_ref()?;
         soil.permeability.as_ref().map(|permeability| permeability.along * permeability.law.relative(soil.porosity, J))
     }

@@ -10,7 +10,7 @@ use crate::points::Points;
 use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::drain::Drainage;
-use crate::water::flow::{Flow, Soil};
+use crate::water::flow::{Flow, Motion, Soil};
 use crate::water::ties::Ties;
 
 /// Share of the tau term, of h^2/M: with it the pair of splines of degree q and q - 1 is stable, and in one dimension
@@ -90,7 +90,7 @@ impl<const D: usize> Pores<D> {
         (t, dt): (f64, f64),
         halo: &dyn Halo,
     ) -> Result<Option<Self>, StepError> {
-        let flows = |water: &'_ Water<D>| water.flow.as_ref().is_some_and(|flow| !flow.held);
+        let flows = |water: &'_ Water<D>| water.flow.as_ref().is_some_and(|flow| flow.motion != Motion::Held);
         let Some(water) = model.water.as_ref().filter(|water| flows(water)) else { return Ok(None) };
         let Some(flow) = &water.flow else { return Ok(None) };
         let (shape, end) = (full.lowered_with_derivatives(&model.grid, points), t + dt);
@@ -111,7 +111,9 @@ impl<const D: usize> Pores<D> {
         halo.maximum(&mut largest);
         let seen: Vec<bool> = sums.chunks_exact(SUMS).map(|of| of[0] > UNSEEN * largest[0]).collect();
         let mut prescribed = vec![None; seen.len()];
-        given(&model.grid, (water, flow), end, &mut prescribed);
+        if flow.motion == Motion::Flows {
+            given(&model.grid, (water, flow), end, &mut prescribed);
+        }
         let free: Vec<bool> = seen.iter().zip(&prescribed).map(|(seen, given)| *seen && given.is_none()).collect();
         let mean = |node: usize| if seen[node] { sums[SUMS * node + 1] / sums[SUMS * node] } else { 0.0 };
         let guess = (0..seen.len()).map(|node| prescribed[node].unwrap_or_else(|| mean(node))).collect();
@@ -169,7 +171,7 @@ impl<const D: usize> Wet<D> {
         let holds = flow.retains();
         let whole = if holds { pressure + water.still_pressure(x, t) } else { pressure };
         let retained = soil.retained(whole, water.unit_weight);
-        let flows = if soil.permeability.is_some() { 1.0 } else { 0.0 };
+        let flows = if flow.permeability(points.material[p], J).is_some() { 1.0 } else { 0.0 };
         Some(Self {
             volume,
             J,

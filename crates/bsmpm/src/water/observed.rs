@@ -7,7 +7,7 @@ use crate::parallel::Halo;
 use crate::points::Points;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
-use crate::water::flow::{Flow, Soil};
+use crate::water::flow::{Flow, Motion, Soil};
 
 /// Part of the pores that counts for nothing beside what is lost: of ground at rest round-off is all that moves.
 const NOTHING: f64 = 1e-9;
@@ -111,7 +111,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     /// crossed its surface and what the points have taken in and given off, added; a billionth of the pores counts for
     /// nothing. 0 where no water is lost, `None` where none flows or its pressures are held. One reduction.
     pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
-        self.water.flow.as_ref().filter(|flow| !flow.held)?;
+        self.water.flow.as_ref().filter(|flow| flow.motion != Motion::Held)?;
         let pores: Exact = (0..self.points.len())
             .map(|p| self.flow(p).map_or(0.0, |(_, soil)| self.points.volume[p] * soil.porosity))
             .collect();

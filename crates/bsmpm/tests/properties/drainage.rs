@@ -15,7 +15,7 @@ use bsmpm::tensor::{Tensor, Vector};
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
 use bsmpm::water::drain::Drainage;
-use bsmpm::water::flow::{Course, Drain, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil};
+use bsmpm::water::flow::{Course, Drain, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil};
 use std::ops::Range;
 use std::sync::{Barrier, Mutex};
 
@@ -55,7 +55,7 @@ fn scene(order: usize, law: PermeabilityLaw, [from, to]: [Vector<2>; 2], given: 
         faces: Vec::new(),
         inflows: vec![Inflow { points, normals, rate: Course(vec![(0.0, 2e-7), (2.0 * DT, 4e-7)]), runs_off: false }],
         suction: 0.0,
-        held: false,
+        motion: Motion::Flows,
     };
     scene.model.water = Some(Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) });
     scene

@@ -11,7 +11,7 @@ use bsmpm::tensor::Vector;
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
 use bsmpm::water::drain::{DrainReport, Drainage};
-use bsmpm::water::flow::{Course, Drain, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil};
+use bsmpm::water::flow::{Course, Drain, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil};
 use std::f64::consts::{FRAC_PI_2, LN_2};
 
 type Plane = Scene<PlaneStrain, 2>;
@@ -88,7 +88,7 @@ fn ring(fineness: usize, inner: Option<f64>) -> Plane {
         faces: Vec::new(),
         inflows: if inner.is_none() { vec![inflow()] } else { Vec::new() },
         suction: 0.0,
-        held: false,
+        motion: Motion::Flows,
     };
     scene.model.water = Some(Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) });
     scene

@@ -20,7 +20,7 @@ use bsmpm::step::{Counts, StepReport, step};
 use bsmpm::tensor::Vector;
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{Drain, DrainedFace, Flow, Given, Permeability, PermeabilityLaw, Soil};
+use bsmpm::water::flow::{Drain, DrainedFace, Flow, Given, Motion, Permeability, PermeabilityLaw, Soil};
 
 /// Where the points of a load on an edge of 1 m are.
 pub const LOAD_PARTS: [f64; 6] = [1.0 / 12.0, 3.0 / 12.0, 5.0 / 12.0, 7.0 / 12.0, 9.0 / 12.0, 11.0 / 12.0];
@@ -45,8 +45,15 @@ pub fn flowing(law: PermeabilityLaw) -> Water<2> {
     let permeability = Permeability { along: at(WEIGHT / M, WEIGHT / M), law };
     let soil = Soil { porosity: 0.6, permeability: Some(permeability), retention: None };
     let (soils, bulk) = (vec![Some(soil)], f64::INFINITY);
-    let flow =
-        Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new(), suction: 0.0, held: false };
+    let flow = Flow {
+        bulk,
+        soils,
+        drains: Vec::new(),
+        faces: Vec::new(),
+        inflows: Vec::new(),
+        suction: 0.0,
+        motion: Motion::Flows,
+    };
     Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) }
 }
 

@@ -24,7 +24,9 @@ use bsmpm::step::{Counts, StepReport, step};
 use bsmpm::tensor::Vector;
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{Course, Drain, DrainedFace, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil};
+use bsmpm::water::flow::{
+    Course, Drain, DrainedFace, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil,
+};
 use bsmpm::water::retention::Retention;
 
 /// Soil of which some yields, with water that flows, a drain, a seepage face and rain that runs off.
@@ -62,7 +64,7 @@ fn wet<K: Kinematics<D>, const D: usize>(
         faces: vec![DrainedFace { axis: 0, upper: false, given: Given::Pressure(Course(vec![(0.0, 5.0)])) }],
         inflows: vec![inflow],
         suction: 0.0,
-        held: false,
+        motion: Motion::Flows,
     };
     scene.model.water = Some(Water { unit_weight: 10.0, ambient: Ambient::Level(vec![(0.0, 0.9)]), flow: Some(flow) });
     scene

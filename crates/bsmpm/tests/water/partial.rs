@@ -9,7 +9,9 @@ use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{Course, Drain, DrainedFace, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil};
+use bsmpm::water::flow::{
+    Course, Drain, DrainedFace, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil,
+};
 use bsmpm::water::retention::Retention;
 
 /// m/s
@@ -28,8 +30,15 @@ fn ground([columns, rows]: [usize; 2], h: f64, retention: Retention) -> Plane {
     let permeability = Some(Permeability { along: at(K, K), law: PermeabilityLaw::Constant });
     let soil = Soil { porosity: POROSITY, permeability, retention: Some(retention) };
     let (soils, bulk) = (vec![Some(soil)], f64::INFINITY);
-    let flow =
-        Flow { bulk, soils, drains: Vec::new(), faces: Vec::new(), inflows: Vec::new(), suction: 0.0, held: false };
+    let flow = Flow {
+        bulk,
+        soils,
+        drains: Vec::new(),
+        faces: Vec::new(),
+        inflows: Vec::new(),
+        suction: 0.0,
+        motion: Motion::Flows,
+    };
     scene.model.water = Some(Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) });
     scene.model.criteria.energy = 1e-10;
     scene.model.criteria.force = 1e-6;

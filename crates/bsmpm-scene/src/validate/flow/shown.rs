@@ -6,7 +6,7 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
 use crate::validate::{place, site};
-use crate::words::{AnalysisType, Side, Word};
+use crate::words::{AnalysisType, Drainage, Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
@@ -27,8 +27,8 @@ const ENOUGH: f64 = 1e-2;
 
 /// What a factor of safety leaves out.
 pub const HELD_WATER: &str = "pore pressures stay as they are at that time; those that shearing makes where it is too fast to \
-                        drain are not in it, and of soft clay the factor is too high by them: hold it against one by the \
-                        undrained strength";
+                        drain are not in it, and of soft clay the factor is too high by them: hold it against that of drainage = \"undrained\" \
+                        (bsmpm fos --undrained)";
 
 /// What the whole case says of a flow: refusals of what is not shown to be right with it.
 pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
@@ -202,9 +202,10 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
 /// Strength that is divided.
 fn divided(root: &Record, report: &mut Report<'_>) {
     let Some(reduction) = root.record("strength_reduction") else { return };
-    if reduction.gives("stage") {
+    let rests = reduction.word::<Drainage>("drainage") != Some(Drainage::Undrained);
+    if reduction.gives("stage") && rests {
         report.warn(format!("strength_reduction.stage: {HELD_WATER}"));
-    } else {
+    } else if !reduction.gives("stage") {
         let message = "strength that is reduced from the start on is not shown to be right with water that flows: give \
                        stage = \"end\" (bsmpm fos --stage end), of the pore pressures of that time, which then stay";
         report.error(reduction.origin, &reduction.path, message);
