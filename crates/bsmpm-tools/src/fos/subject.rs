@@ -85,8 +85,8 @@ pub(super) struct Conditions {
 }
 
 impl Subject {
-    /// The case at `path` with overrides, to be searched from the factor `from` on, at the end of a `stage`, there without
-    /// drainage or with the pore pressures of that time, or as the body is drawn.
+    /// The case at `path` with overrides, to be searched from the factor `from` on: at the end of a `stage`, there
+    /// without drainage or with the pore pressures of that time, or as the body is drawn.
     ///
     /// # Errors
     /// [`Error::Missing`] for a file that cannot be read, [`Error::BadCase`] with all errors of the case,
