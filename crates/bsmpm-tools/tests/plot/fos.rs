@@ -293,6 +293,10 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
         (vec!["stage=[{ at = 0.5, reset_displacements = true }]"], "it has stages, of which each has a factor"),
         (vec!["gravity.acceleration=[0.0, 0.0]"], "nothing loads the body"),
         (vec!["gravity.ramp=2.0"], "grows beyond `end`"),
+        (
+            vec!["point_load=[{ at = [2.0, 9.0], force = [0.0, -1e3], amplitude = [[0.5, 1.0]] }]"],
+            "a load follows an amplitude",
+        ),
         (vec![strip], "prescribes a motion"),
         (vec!["grid.cel=1.0"], "grid.cel"),
     ] {
@@ -304,7 +308,7 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
     let stage = "stage=[{ at = 0.5, name = \"dug\", reset_displacements = true }]";
     let output = bench.fos(&["--set", stage, "--stage", "start"]);
     let said = text(&output.stderr);
-    assert!(output.status.code() == Some(65) && said.contains("a load still grows at the end"), "{output:?}");
+    assert!(output.status.code() == Some(65) && said.contains("a load still changes at the end"), "{output:?}");
     let output = bench.fos(&["--set", stage, "--stage", "dig"]);
     assert!(
         output.status.code() == Some(2) && text(&output.stderr).contains("\"dug\", \"start\", \"end\""),
