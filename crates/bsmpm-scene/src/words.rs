@@ -14,8 +14,8 @@ mod solver;
 pub use measurement::Measurement;
 pub use output::{FrameField, ProfileQuantity};
 pub use scene::{
-    Accuracy, AnalysisType, Axis, Base, C0Lines, Components, Drainage, Format, Geometry, Order, Path, RigidMotion,
-    Settled, Side, Start, Support,
+    Accuracy, AnalysisType, Axis, Base, C0Lines, Components, Drainage, Failure, Format, Geometry, Order, Path,
+    RigidMotion, Settled, Side, Start, Support,
 };
 pub use solver::{Factor, Ksp, LinearSolver, Nonlinear, Pc};
 

@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
-use crate::words::{Axis, Base, Components, Drainage, Settled, Side, Start, Support, Word};
+use crate::words::{Axis, Base, Components, Failure, Settled, Side, Start, Support, Word};
 use std::ops::Bound::Included;
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
@@ -240,10 +240,9 @@ pub(super) static REDUCTION: Table = Table {
         ),
         key(
             "drainage",
-            Choice(Drainage::WORDS),
-            Default("\"given\""),
-            "of water that has flowed until the end of that stage: given: every point keeps its pore pressure, a failure so \
-             slow that it drains; undrained: the water stays where it is, and its pressure follows the strain, a sudden one",
+            Choice(Failure::WORDS),
+            Default("\"drained\""),
+            "how the ground fails that water has flowed through until the end of that stage",
         ),
         key(
             "steps",

@@ -5,7 +5,7 @@ use crate::case::{Acting, Case, Counted, Gravity, PointLoad, Quantity, Stage, Tr
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
-use crate::words::Drainage;
+use crate::words::Failure;
 use bsmpm::model::Regime;
 use bsmpm::water::flow::Motion;
 
@@ -87,19 +87,15 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
 
 /// What water that flows until then does.
 fn rest(case: &mut Case, table: &Record, report: &mut Report<'_>) {
-    let drainage = table.word::<Drainage>("drainage");
-    match (drainage, &mut case.flow) {
-        (Some(Drainage::Undrained), Some(flow)) => flow.divided = Motion::Undrained,
-        (Some(Drainage::Undrained), None) => {
+    if table.word("drainage") != Some(Failure::Undrained) {
+        return;
+    }
+    match &mut case.flow {
+        Some(flow) => flow.divided = Motion::Undrained,
+        None => {
             let message = "no water flows that could stay: give a material drainage = \"coupled\" or \"undrained\"";
             table.error("drainage", message, report);
         }
-        (Some(Drainage::Coupled), _) => {
-            let message = "\"coupled\" would be a race between the water and the strength: take \"given\" for a failure so \
-                           slow that it drains, or \"undrained\"";
-            table.error("drainage", message, report);
-        }
-        _ => {}
     }
 }
 

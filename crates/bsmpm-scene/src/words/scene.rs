@@ -95,6 +95,16 @@ choice! {
 }
 
 choice! {
+    /// How fast the ground fails, beside how fast its water flows.
+    pub enum Failure {
+        /// So slowly that it drains: every point keeps its pore pressure.
+        Drained = "drained",
+        /// At once: the water stays where it is, and its pressure follows the strain.
+        Undrained = "undrained",
+    }
+}
+
+choice! {
     /// What a case leaves out of its discretisation is filled in as coarse or as fine; coarsest first.
     pub enum Accuracy {
         /// To look at.

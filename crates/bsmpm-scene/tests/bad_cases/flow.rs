@@ -109,7 +109,7 @@ pub const FLOW: &[Row] = &[
         "[solver]",
         "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\ndrainage = \"coupled\"\n[solver]",
         "strength_reduction.drainage",
-        "take \"given\"",
+        "\"drained\", \"undrained\"",
     )
     .down(3),
     row(

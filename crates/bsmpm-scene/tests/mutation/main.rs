@@ -154,7 +154,7 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
 
 fn bases() -> Vec<String> {
     let later =
-        format!("{STATIC}\n[strength_reduction]\nfactor = 1.2\nstage = \"end\"\nsteps = 5\ndrainage = \"given\"\n");
+        format!("{STATIC}\n[strength_reduction]\nfactor = 1.2\nstage = \"end\"\nsteps = 5\ndrainage = \"drained\"\n");
     let wet = |table: &str| {
         let soil = "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nsaturated_unit_weight = \"20 kN/m3\"";
         let fields = "every = 0.5\nfields = [\"pore-pressure\"]";

@@ -6,7 +6,7 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
 use crate::validate::{place, site};
-use crate::words::{AnalysisType, Drainage, Side, Word};
+use crate::words::{AnalysisType, Failure, Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
@@ -202,7 +202,7 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
 /// Strength that is divided.
 fn divided(root: &Record, report: &mut Report<'_>) {
     let Some(reduction) = root.record("strength_reduction") else { return };
-    let rests = reduction.word::<Drainage>("drainage") != Some(Drainage::Undrained);
+    let rests = reduction.word("drainage") != Some(Failure::Undrained);
     if reduction.gives("stage") && rests {
         report.warn(format!("strength_reduction.stage: {HELD_WATER}"));
     } else if !reduction.gives("stage") {
