@@ -7,6 +7,8 @@ use crate::record::Record;
 use crate::report::{Report, shortened};
 use crate::words::Failure;
 use bsmpm::model::Regime;
+use bsmpm::schedule::between;
+use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::Motion;
 
 /// Parts of a step by which stages lie apart.
@@ -143,6 +145,8 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     let loads = kept(&Acting::Load, tractions);
     let points = kept(&|k| Acting::Load(tractions + k), case.point_loads.len());
     let bodies: Vec<bool> = (0..case.bodies.len()).map(|body| case.is_there(body, until)).collect();
+    let end = steps.max(1) as f64 * case.analysis.dt;
+    settle(case, until, end);
     (case.materials, case.footing) = (case.materials_at(until), footing);
     for of in case.faces_at(until) {
         case.boundary[of.face.axis][usize::from(of.face.upper)] = of.support;
@@ -156,12 +160,31 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     case.flow.iter_mut().for_each(|flow| flow.motion = Motion::Held);
     // Others may be of what is not there.
     case.histories.retain(|history| history.quantity == Quantity::MaxDisplacement { of: Counted::All });
-    case.analysis.end = steps.max(1) as f64 * case.analysis.dt;
-    let end = case.analysis.end;
+    case.analysis.end = end;
     let ramps = (case.gravity.iter_mut().map(|Gravity { ramp, .. }| ramp))
         .chain(case.tractions.iter_mut().map(|Traction { ramp, .. }| ramp))
         .chain(case.point_loads.iter_mut().map(|PointLoad { ramp, .. }| ramp));
     ramps.for_each(|ramp| *ramp = end);
+}
+
+/// Gives what follows time the value of the time `until`: the water's level, and loads with an amplitude, which grow to it
+/// until `end`.
+fn settle(case: &mut Case, until: f64, end: f64) {
+    if let Some(water) = &mut case.water
+        && let Some((level, _)) = water.table.table(0.0, until)
+        && let Ambient::Level(rows) = &mut water.table
+    {
+        *rows = vec![(0.0, level)];
+    }
+    let loads = 0..case.tractions.len() + case.point_loads.len();
+    let ages: Vec<f64> =
+        loads.map(|load| until - case.acts_since(Acting::Load(load), until).unwrap_or(until)).collect();
+    let tractions = case.tractions.iter_mut().map(|load| &mut load.amplitude);
+    let amplitudes = tractions.chain(case.point_loads.iter_mut().map(|load| &mut load.amplitude));
+    for (rows, age) in amplitudes.zip(ages).filter(|(rows, _)| !rows.is_empty()) {
+        let share = between(rows, 0.0, age).or(rows.last().map(|row| row.1));
+        *rows = vec![(end, share.unwrap_or(1.0))];
+    }
 }
 
 fn retain<T>(all: &mut Vec<T>, kept: &[bool]) {
@@ -260,6 +283,13 @@ mod tests {
         assert_eq!(first.gravity.map(|gravity| gravity.ramp), Some(first.analysis.end));
         let last = case(&["strength_reduction.unloaded=true", "strength_reduction.stage=end"]);
         assert_eq!((last.bodies.len(), last.point_loads.len()), (3, 1));
+        // What follows time has the value of the end.
+        let timed = ["point_load.0.amplitude=[[4.0, 0.8]]", "water={ level_path = [[0.0, 1.0], [4.0, 2.0]] }"];
+        let timed = case(&[&["strength_reduction.unloaded=true", "strength_reduction.stage=end"][..], &timed].concat());
+        let [(time, share)] = timed.point_loads[0].amplitude[..] else { panic!("{:?}", timed.point_loads) };
+        assert!(time == timed.analysis.end && (share - 0.2).abs() < 1e-6, "it acts for one second: {share}");
+        let level = timed.water.unwrap().table.table(0.0, 0.1).unwrap().0;
+        assert!((level - 1.75).abs() < 1e-6, "{level}");
         let before = case(&["strength_reduction.unloaded=true", "strength_reduction.stage=start"]);
         assert_eq!((before.bodies.len(), before.point_loads.len()), (1, 0));
     }
