@@ -167,8 +167,8 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     ramps.for_each(|ramp| *ramp = end);
 }
 
-/// Gives what follows time the value of the time `until`: the water's level, and loads with an amplitude, which grow to it
-/// until `end`.
+/// Gives what follows time the value of the time `until`: the water's level, and loads with an amplitude, which grow
+/// to it until `end`.
 fn settle(case: &mut Case, until: f64, end: f64) {
     if let Some(water) = &mut case.water
         && let Some((level, _)) = water.table.table(0.0, until)
