@@ -8,8 +8,11 @@ const ROUGH: f64 = 1e-5;
 /// How often a piece is halved at most.
 const HALVINGS: u32 = 8;
 
-/// Pieces in which what has no corners of its own is looked at first.
+/// Pieces in which a surface is looked at first, beside those between its corners: its walls may stand askew.
 const PARTS: usize = 8;
+
+/// The same where it has more corners than that.
+const MOST_PARTS: usize = 256;
 
 /// Volume of what is inside `bounds` (lower and upper corner of a cuboid), m³; `covered`: its length along the vertical
 /// line at a place. The lines' places are chosen by the `shapes` that it is made of.
@@ -34,7 +37,8 @@ fn along(shape: &SolidShape) -> Vec<f64> {
         SolidShape::Revolved { outline, about } => {
             corners(outline, 0).into_iter().flat_map(|r| [about[0] - r, about[0] + r]).collect()
         }
-        SolidShape::Terrain(_) | SolidShape::Surface(_) => parts(lower[0], upper[0]),
+        SolidShape::Terrain(raster) => raster.posts(0),
+        SolidShape::Surface(surface) => of_corners(surface.corners(0).collect(), [lower[0], upper[0]]),
         _ => vec![lower[0], upper[0]],
     }
 }
@@ -53,7 +57,8 @@ fn across(shape: &SolidShape, x: f64) -> Vec<f64> {
         SolidShape::Revolved { outline, about } => {
             corners(outline, 0).into_iter().flat_map(|r| chord(*about, r)).collect()
         }
-        SolidShape::Terrain(_) | SolidShape::Surface(_) => parts(lower[1], upper[1]),
+        SolidShape::Terrain(raster) => raster.posts(1),
+        SolidShape::Surface(surface) => of_corners(surface.corners(1).collect(), [lower[1], upper[1]]),
         _ => vec![lower[1], upper[1]],
     }
 }
@@ -62,8 +67,13 @@ fn corners(outline: &Section, axis: usize) -> Vec<f64> {
     outline.edges.iter().flat_map(|edge| [edge.a[axis], edge.b[axis]]).collect()
 }
 
-fn parts(lower: f64, upper: f64) -> Vec<f64> {
-    (0..=PARTS).map(|part| lower + (upper - lower) * part as f64 / PARTS as f64).collect()
+fn of_corners(mut corners: Vec<f64>, [lower, upper]: [f64; 2]) -> Vec<f64> {
+    corners.sort_by(f64::total_cmp);
+    corners.dedup();
+    let many = corners.len() > MOST_PARTS;
+    let parts = if many { MOST_PARTS } else { PARTS };
+    let even = (0..=parts).map(|part| lower + (upper - lower) * part as f64 / parts as f64);
+    even.chain(if many { Vec::new() } else { corners }).collect()
 }
 
 /// A function's integral between the breaks.

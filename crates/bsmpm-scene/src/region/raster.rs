@@ -21,6 +21,11 @@ pub(crate) struct Raster {
 }
 
 impl Raster {
+    /// Places of the posts along an axis, m.
+    pub(super) fn posts(&self, axis: usize) -> Vec<f64> {
+        (0..self.count[axis]).map(|k| self.lower[axis] + self.spacing[axis] * k as f64).collect()
+    }
+
     /// Of rows [x, y, z] in any order, on a level. Says what is wrong with them.
     pub(crate) fn new(rows: &[[f64; 3]], level: f64) -> Result<Self, String> {
         if rows.len() < 4 {

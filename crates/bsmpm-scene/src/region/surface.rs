@@ -18,6 +18,11 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
+    /// Places of all corners along an axis, m.
+    pub(super) fn corners(&self, axis: usize) -> impl Iterator<Item = f64> {
+        self.triangles.iter().flatten().map(move |corner| corner[axis])
+    }
+
     /// Of rows of nine numbers, the corners of a triangle each; which way all of them turn does not matter. Says what
     /// is wrong with them.
     pub(crate) fn new(rows: impl Iterator<Item = [f64; 9]>) -> Result<Self, String> {

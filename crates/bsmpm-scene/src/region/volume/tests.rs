@@ -1,7 +1,7 @@
 //! Volumes of points against closed forms.
 
-use super::super::Surface;
 use super::super::solid::Section;
+use super::super::{Raster, Surface};
 use super::*;
 use std::f64::consts::PI;
 
@@ -103,7 +103,7 @@ fn surfaces_of_triangles_are_scaled_to_their_volume() {
 }
 
 /// Of what is cut out anyhow lines tell the volume: a ball inside a block, a pit with three sides, a ring, a ball that
-/// bites into another, a turned cuboid of triangles, whose walls stand upright.
+/// bites into another, a turned cuboid of triangles, whose walls stand upright; and a ball inside ground with a dike.
 #[test]
 fn what_is_cut_out_anyhow_has_its_volume_to_a_hundred_thousandth() {
     let block = || SolidShape::Box { corners: [[0.1, 0.2, 0.3], [2.6, 2.7, 2.8]] };
@@ -121,7 +121,15 @@ fn what_is_cut_out_anyhow_has_its_volume_to_a_hundred_thousandth() {
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let halves = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
     let turned = Surface::new(halves.map(|corners| corners.map(at).concat().try_into().unwrap())).unwrap();
+    let post = |k: usize| [0.1 + 0.01 * (k / 2) as f64, [0.2, 2.7][k % 2], if k / 2 == 223 { 2.44 } else { 2.13 }];
+    let ground = Raster::new(&(0..2 * 251).map(post).collect::<Vec<_>>(), 0.31).unwrap();
+    let of_ground = ground.volume();
     let cases = [
+        (
+            SolidShape::Terrain(Box::new(ground)),
+            SolidShape::Sphere { center: [0.8, 1.5, 1.2], radius: 0.5 },
+            of_ground - PI / 6.0,
+        ),
         (block(), ball(1.5), whole - of_ball),
         (block(), pit, whole - 1.12 * 2.1),
         (block(), ring, whole - 2.0 * PI * PI * 0.8 * 0.09),
