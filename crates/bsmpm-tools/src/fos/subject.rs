@@ -293,6 +293,10 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
             until.is_none() && !case.stages.is_empty(),
             "it has stages, of which each has a factor of its own: give --stage NAME, at whose end it is wanted, or \"end\"",
         ),
+        (
+            case.stages.iter().any(|stage| stage.strength_reduction.is_some()),
+            "the case divides the strength itself, at the end of a stage or in one: leave that out, as the search does so",
+        ),
         (!is_plastic, "no material is plastic: there is no strength to be reduced"),
         (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),
         (
