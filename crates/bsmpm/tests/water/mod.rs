@@ -44,10 +44,14 @@ fn at(x: f64, y: f64) -> Vector<2> {
 pub fn flowing(law: PermeabilityLaw) -> Water<2> {
     let permeability = Permeability { along: at(WEIGHT / M, WEIGHT / M), law };
     let soil = Soil { porosity: 0.6, permeability: Some(permeability), retention: None };
-    let (soils, bulk) = (vec![Some(soil)], f64::INFINITY);
+    through(soil)
+}
+
+/// Incompressible water that flows through one soil.
+pub fn through(soil: Soil<2>) -> Water<2> {
     let flow = Flow {
-        bulk,
-        soils,
+        bulk: f64::INFINITY,
+        soils: vec![Some(soil)],
         drains: Vec::new(),
         faces: Vec::new(),
         inflows: Vec::new(),

@@ -1,17 +1,13 @@
 //! Soils that water does not fill, in a skeleton that is next to rigid: steady columns against the equation of Richards
 //! (1931), rain that runs off, and the discharge of a dam with a seepage face.
 
-use super::{Plane, WEIGHT, at, run};
+use super::{Plane, WEIGHT, at, run, through};
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Support, SurfacePoint};
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
-use bsmpm::water::Water;
-use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{
-    Course, Drain, DrainedFace, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil,
-};
+use bsmpm::water::flow::{Course, Drain, DrainedFace, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil};
 use bsmpm::water::retention::Retention;
 
 /// m/s
@@ -29,17 +25,7 @@ fn ground([columns, rows]: [usize; 2], h: f64, retention: Retention) -> Plane {
     scene = scene.support(Support::roller(0, false)).support(Support::roller(1, false));
     let permeability = Some(Permeability { along: at(K, K), law: PermeabilityLaw::Constant });
     let soil = Soil { porosity: POROSITY, permeability, retention: Some(retention) };
-    let (soils, bulk) = (vec![Some(soil)], f64::INFINITY);
-    let flow = Flow {
-        bulk,
-        soils,
-        drains: Vec::new(),
-        faces: Vec::new(),
-        inflows: Vec::new(),
-        suction: 0.0,
-        motion: Motion::Flows,
-    };
-    scene.model.water = Some(Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) });
+    scene.model.water = Some(through(soil));
     scene.model.criteria.energy = 1e-10;
     scene.model.criteria.force = 1e-6;
     scene
