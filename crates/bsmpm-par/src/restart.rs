@@ -132,8 +132,7 @@ fn resume<'h>(
     let state = CheckpointState::parse(&found.path, &opened.state()?)?;
     let past = &state.files.manifest;
     let changed = there::admissible(&format!("the checkpoint {}", found.path.display()), past, case)?;
-    let divided =
-        |stage: &Stage| stage.strength_reduction.is_some_and(|factor| factor != 1.0) && stage.at <= state.progress.t;
+    let divided = |stage: &Stage| stage.strength_reduction.is_some() && stage.at <= state.progress.t;
     if let Some(change) = changed.iter().find(|change| change.is_of_later_strength())
         && past.stages.iter().any(|stage| stage.strength_reduction.is_some()) | case.stages.iter().any(divided)
     {

@@ -43,8 +43,7 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
         extent: case.solver.background_cells,
     });
     let (grid, materials) = (grid(case)?, case.materials_at(t));
-    let motion = case.water_at(t);
-    let flow = surfaces::flow::<K, D>(case, &grid).map(|flow| Flow { motion, ..flow });
+    let flow = surfaces::flow::<K, D>(case, &grid, t);
     Ok(Model {
         materials: materials.iter().map(|named| named.material.clone()).collect(),
         regime: case.analysis.regime,

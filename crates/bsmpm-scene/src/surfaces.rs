@@ -8,7 +8,7 @@ use bsmpm::grid::Grid;
 use bsmpm::kinematics::{Axisymmetric, Kinematics};
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow, Motion, Permeability, Soil};
+use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow, Permeability, Soil};
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step
 /// to step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
@@ -179,8 +179,12 @@ pub fn name_of_drain(case: &Case, surface: usize) -> String {
     }
 }
 
-/// What flow is to the soils and to surfaces, if water flows.
-pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Option<bsmpm::water::flow::Flow<D>> {
+/// What flow is to the soils and to surfaces once the stages until the time `t` have begun, if water flows.
+pub fn flow<K: Kinematics<D>, const D: usize>(
+    case: &Case,
+    grid: &Grid<D>,
+    t: f64,
+) -> Option<bsmpm::water::flow::Flow<D>> {
     let flow = case.flow.as_ref()?;
     let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
     let surface = |lines: &[[[f64; 2]; 2]]| -> (Vec<SurfacePoint<D>>, Vec<Vector<D>>) {
@@ -230,7 +234,7 @@ pub fn flow<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>) -> Op
         faces: flow.drains.iter().filter_map(face).collect(),
         inflows: flow.inflows.iter().map(inflow).collect(),
         suction: flow.suction,
-        motion: Motion::Flows,
+        motion: case.water_at(t),
     })
 }
 

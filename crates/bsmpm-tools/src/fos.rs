@@ -69,7 +69,7 @@ Examples:
   bsmpm fos cases/excavation.toml --stage \"pit 1\" --to 8
   bsmpm fos case.toml --width 0.01 --set grid.cell=\"0.5 m\" -o fine -- mpirun -n 4 bsmpm-par")]
 pub struct FosArguments {
-    /// The case file: quasi-static, with a plastic material and a load
+    /// The case file: quasi-static or, with --stage, a consolidation, with a plastic material and a load
     pub case: PathBuf,
     /// The least factor
     #[arg(long, value_name = "FACTOR", default_value_t = 0.5)]

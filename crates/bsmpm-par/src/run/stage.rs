@@ -62,6 +62,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             (!faces.is_empty()).then(|| faces.join(", ")),
             (!exchanged.is_empty()).then(|| exchanged.join(", ")),
             strength_reduction.map(|factor| format!("strength divided by {factor}")),
+            stage.rests.then(|| "the water rests".to_owned()),
             stage.resets_displacements.then(|| "displacements set to zero".to_owned()),
         ];
         let changes: Vec<String> = changes.into_iter().flatten().collect();

@@ -21,8 +21,8 @@ pub struct Flow {
     pub suction: f64,
     /// What the water does.
     pub motion: Motion,
-    /// The same while the strength of the start is divided.
-    pub divided: Motion,
+    /// The same once it rests: while strength is divided.
+    pub at_rest: Motion,
 }
 
 /// A surface at which the pressure is given.

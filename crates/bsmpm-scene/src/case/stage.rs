@@ -26,6 +26,8 @@ pub struct Stage {
     pub materials: Vec<(usize, usize)>,
     /// -  factor by which the strength that the file gives is divided from here on, if that changes
     pub strength_reduction: Option<f64>,
+    /// Whether water that flows rests from here on.
+    pub rests: bool,
     /// Whether displacements that are told count from here.
     pub resets_displacements: bool,
     /// Numbers of the histories that follow a point of what is placed.
@@ -36,7 +38,8 @@ impl Stage {
     /// Whether another model goes on from here: one with other loads, supports or laws.
     pub fn exchanges(&self) -> bool {
         let switches = !(self.apply.is_empty() && self.release.is_empty());
-        switches || !(self.faces.is_empty() && self.materials.is_empty()) || self.strength_reduction.is_some()
+        let others = !(self.faces.is_empty() && self.materials.is_empty()) || self.strength_reduction.is_some();
+        switches || others || self.rests
     }
 
     /// Whether it releases, and whether it applies something.
@@ -103,11 +106,10 @@ impl Case {
         factor.map_or(1.0, |factor| factor / self.strength_reduction.unwrap_or(1.0))
     }
 
-    /// What water that may flow does once the stages until the time `t` have begun: it rests where strength is divided.
+    /// What water that may flow does once the stages until the time `t` have begun.
     pub(crate) fn water_at(&self, t: f64) -> Motion {
-        let Some(flow) = &self.flow else { return Motion::Flows };
-        let divides = |stage: &Stage| stage.strength_reduction.is_some() && self.has_begun(stage, t);
-        if self.stages.iter().any(divides) { flow.divided } else { flow.motion }
+        let rests = self.stages.iter().any(|stage| stage.rests && self.has_begun(stage, t));
+        self.flow.as_ref().map_or(Motion::Flows, |flow| if rests { flow.at_rest } else { flow.motion })
     }
 
     /// When the stage of a name ends (s, or pseudo-time): as the next one begins. `"start"`, of what is before the

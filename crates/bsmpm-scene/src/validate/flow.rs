@@ -70,7 +70,7 @@ pub(super) fn read(
         inflows,
         suction,
         motion: Motion::Flows,
-        divided: Motion::Held,
+        at_rest: Motion::Held,
     }))
 }
 

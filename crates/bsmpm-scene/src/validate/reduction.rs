@@ -93,7 +93,7 @@ fn rest(case: &mut Case, table: &Record, report: &mut Report<'_>) {
         return;
     }
     match &mut case.flow {
-        Some(flow) => flow.divided = Motion::Undrained,
+        Some(flow) => flow.at_rest = Motion::Undrained,
         None => {
             let message = "no water flows that could stay: give a material drainage = \"coupled\" or \"undrained\"";
             table.error("drainage", message, report);
@@ -118,12 +118,14 @@ fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
         faces: Vec::new(),
         materials: Vec::new(),
         strength_reduction: None,
+        rests: false,
         resets_displacements: false,
         follows: Vec::new(),
     };
-    // Water that flows rests from then on.
-    let rests = case.flow.is_some() && steps > 0;
-    case.stages.extend(rests.then(|| Stage { strength_reduction: Some(1.0), ..nothing.clone() }));
+    if case.flow.is_some() && steps > 0 {
+        case.stages.push(Stage { rests: true, ..nothing.clone() });
+        stay(case, until);
+    }
     case.stages.extend((1..=steps).map(|step| Stage {
         at: until + step as f64 * dt,
         strength_reduction: Some(1.0 + (factor - 1.0) * (step as f64 / steps as f64)),
@@ -167,14 +169,23 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     ramps.for_each(|ramp| *ramp = end);
 }
 
-/// Gives what follows time the value of the time `until`: the water's level, and loads with an amplitude, which grow
-/// to it until `end`.
-fn settle(case: &mut Case, until: f64, end: f64) {
+/// Lets the water's level stay where it is at the time `until`.
+fn stay(case: &mut Case, until: f64) {
     if let Some(water) = &mut case.water
         && let Some((level, _)) = water.table.table(0.0, until)
         && let Ambient::Level(rows) = &mut water.table
     {
-        *rows = vec![(0.0, level)];
+        rows.retain(|row| row.0 < until);
+        rows.push((until, level));
+    }
+}
+
+/// Gives what follows time the value of the time `until`: the water's level, and loads with an amplitude, which grow
+/// to it until `end`.
+fn settle(case: &mut Case, until: f64, end: f64) {
+    stay(case, until);
+    if let Some(Ambient::Level(rows)) = case.water.as_mut().map(|water| &mut water.table) {
+        rows.drain(..rows.len() - 1);
     }
     let loads = 0..case.tractions.len() + case.point_loads.len();
     let ages: Vec<f64> =

@@ -93,6 +93,7 @@ fn stage(
         faces,
         materials,
         strength_reduction,
+        rests: false,
         resets_displacements,
         follows: Vec::new(),
     })

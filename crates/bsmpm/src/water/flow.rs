@@ -25,10 +25,9 @@ pub struct Flow<const D: usize> {
 }
 
 /// What water does that may flow.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     /// It flows.
-    #[default]
     Flows,
     /// It stays where it is: nothing flows, crosses a surface or is given, and the pressure follows the strain.
     Undrained,

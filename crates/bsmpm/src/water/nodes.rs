@@ -90,9 +90,12 @@ impl<const D: usize> Pores<D> {
         (t, dt): (f64, f64),
         halo: &dyn Halo,
     ) -> Result<Option<Self>, StepError> {
-        let flows = |water: &'_ Water<D>| water.flow.as_ref().is_some_and(|flow| flow.motion != Motion::Held);
-        let Some(water) = model.water.as_ref().filter(|water| flows(water)) else { return Ok(None) };
-        let Some(flow) = &water.flow else { return Ok(None) };
+        let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
+            return Ok(None);
+        };
+        if flow.motion == Motion::Held {
+            return Ok(None);
+        }
         let (shape, end) = (full.lowered_with_derivatives(&model.grid, points), t + dt);
         let wet: Vec<Option<Wet<D>>> =
             (0..points.len()).map(|p| Wet::of(model, (water, flow), points, p, (t, end))).collect();

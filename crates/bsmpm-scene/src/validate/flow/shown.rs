@@ -26,9 +26,9 @@ const LARGE: f64 = 0.1;
 const ENOUGH: f64 = 1e-2;
 
 /// What a factor of safety leaves out.
-pub const HELD_WATER: &str = "pore pressures stay as they are at that time; those that shearing makes where it is too fast to \
-                        drain are not in it, and of soft clay the factor is too high by them: hold it against that of drainage = \"undrained\" \
-                        (bsmpm fos --undrained)";
+pub const HELD_WATER: &str = "pore pressures stay as they are at that time; those that shearing makes where it is too \
+    fast to drain are not in it, and of soft clay the factor is too high by them: hold it against that of drainage = \
+    \"undrained\" (bsmpm fos --undrained)";
 
 /// What the whole case says of a flow: refusals of what is not shown to be right with it.
 pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
