@@ -177,8 +177,8 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
         return None;
     }
     let growth = growth(analysis, (kind, dt), report)?;
-    if growth.is_none() && end / dt > MOST_STEPS {
-        let message = format!("{:.3e} steps to the end; at most {MOST_STEPS:e} are possible", end / dt);
+    if end / dt > MOST_STEPS {
+        let message = format!("{:.3e} steps of dt to the end; at most {MOST_STEPS:e} are possible", end / dt);
         analysis.error("dt", message, report);
         return None;
     }

@@ -124,6 +124,22 @@ impl Case {
         }
     }
 
+    /// Whether gravity, or a load that acts until a time, does not act in full then, or changes later.
+    pub(crate) fn still_grows(&self, until: f64) -> bool {
+        let before = self.just_before(until);
+        // From the last row before which it has another value; it begins with none.
+        let rests = |rows: &[(f64, f64)]| {
+            let values = std::iter::once(0.0).chain(rows.iter().map(|row| row.1));
+            rows.iter().zip(values).filter(|(row, before)| row.1 != *before).map(|(row, _)| row.0).fold(0.0, f64::max)
+        };
+        let tractions = self.tractions.iter().map(|load| load.ramp.max(rests(&load.amplitude)));
+        let loads = tractions.chain(self.point_loads.iter().map(|load| load.ramp.max(rests(&load.amplitude))));
+        let acting = loads
+            .enumerate()
+            .filter_map(|(load, grows)| self.acts_since(Acting::Load(load), before).map(|since| since + grows));
+        acting.chain(self.gravity.iter().map(|gravity| gravity.ramp)).any(|end| end > until * (1.0 + 1e-9))
+    }
+
     /// A time at which nothing has begun that begins at the time `t`, and everything that began before.
     pub fn just_before(&self, t: f64) -> f64 {
         t - 1.5 * SAME * self.analysis.dt

@@ -241,8 +241,9 @@ pub(super) static REDUCTION: Table = Table {
         key(
             "drainage",
             Choice(Failure::WORDS),
-            Default("\"drained\""),
-            "how the ground fails that water has flowed through until the end of that stage",
+            Optional,
+            "how the ground fails that water has flowed through until the end of that stage; absent: \"drained\", or \
+             \"undrained\" if it can flow through none of the soils",
         ),
         key(
             "steps",

@@ -73,7 +73,7 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         table.error("stage", format!("stage.{number} divides the strength, too: leave one of them out"), report);
     }
     divisible(case, table, report);
-    rest(case, table, report);
+    rest(case, (table, unloaded), report);
     if !case.checks.is_empty() {
         report.note("check", "none", "strength_reduction.stage: they are of the case as it is");
         case.checks.clear();
@@ -81,23 +81,39 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     if unloaded {
         load_at_once(case, case.just_before(until), steps)
     } else {
+        if steps > 0 && case.still_grows(until) {
+            let message = "a load still changes at the end of that stage, and would go on while the strength falls: let its \
+                           ramp or amplitude end before";
+            table.error("stage", message, report);
+        }
         reduce(case, (until, steps), factor)
     }
     let end = case.analysis.end;
     case.output.times.retain(|t| *t <= end);
 }
 
-/// What water that flows until then does.
-fn rest(case: &mut Case, table: &Record, report: &mut Report<'_>) {
-    if table.word("drainage") != Some(Failure::Undrained) {
-        return;
-    }
-    match &mut case.flow {
-        Some(flow) => flow.at_rest = Motion::Undrained,
-        None => {
+/// What water that flows until then does; and what only ground in which none flows can have.
+fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report<'_>) {
+    let made: Vec<bool> = (0..case.materials.len()).map(|number| case.is_followed(number)).collect();
+    let Some(flow) = &mut case.flow else {
+        if table.gives("drainage") {
             let message = "no water flows that could stay: give a material drainage = \"coupled\" or \"undrained\"";
             table.error("drainage", message, report);
         }
+        return;
+    };
+    let mut soils = flow.soils.iter().zip(made).filter(|(_, made)| *made).filter_map(|(soil, _)| soil.as_ref());
+    let stays = soils.all(|soil| soil.permeability.is_none());
+    let failure = table.word("drainage").unwrap_or(if stays { Failure::Undrained } else { Failure::Drained });
+    if failure == Failure::Undrained {
+        flow.at_rest = Motion::Undrained;
+    }
+    let changed =
+        [("elastic", table.flag("elastic") == Some(true)), ("stiffness", table.number("stiffness") != Some(1.0))];
+    for (key, _) in changed.into_iter().filter(|(_, changed)| *changed && !unloaded) {
+        let message =
+            "it would hold from the first step on, and what consolidates does so by its own law: leave it out";
+        table.error(key, message, report);
     }
 }
 
@@ -122,9 +138,11 @@ fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
         resets_displacements: false,
         follows: Vec::new(),
     };
+    if steps > 0 {
+        stay(case, until);
+    }
     if case.flow.is_some() && steps > 0 {
         case.stages.push(Stage { rests: true, ..nothing.clone() });
-        stay(case, until);
     }
     case.stages.extend((1..=steps).map(|step| Stage {
         at: until + step as f64 * dt,
@@ -301,6 +319,9 @@ mod tests {
         assert!(time == timed.analysis.end && (share - 0.2).abs() < 1e-6, "it acts for one second: {share}");
         let level = timed.water.unwrap().table.table(0.0, 0.1).unwrap().0;
         assert!((level - 1.75).abs() < 1e-6, "{level}");
+        let rises = ["strength_reduction.stage=end", "water={ level_path = [[0.0, 1.0], [4.0, 2.0]] }"];
+        let level = |t: f64| case(&rises).water.unwrap().table.table(0.0, t).unwrap().0;
+        assert_eq!([2.0, 3.0, 4.0].map(level), [1.5, 1.75, 1.75], "it stays while the strength falls");
         let before = case(&["strength_reduction.unloaded=true", "strength_reduction.stage=start"]);
         assert_eq!((before.bodies.len(), before.point_loads.len()), (1, 0));
     }

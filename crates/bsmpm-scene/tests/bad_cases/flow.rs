@@ -114,6 +114,14 @@ pub const FLOW: &[Row] = &[
     .down(3),
     row(
         "[solver]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\nstiffness = 3\n[solver]",
+        "strength_reduction.stiffness",
+        "it would hold from the first step on",
+    )
+    .down(3),
+    row("dt     = \"1 h\"", "dt     = 0.1", "analysis.dt", "6.312e9 steps of dt to the end; at most 1e9"),
+    row(
+        "[solver]",
         "[[stage]]\nat = \"1 day\"\nboundary = { left = \"fixed\" }\n[solver]",
         "stage.0.boundary",
         "faces that change are not shown",

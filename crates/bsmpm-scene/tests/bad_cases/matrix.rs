@@ -250,7 +250,7 @@ const MATRIX: &[Input] = &[
                 "0 is out of range; allowed: 1 <= steps <= 1000000000",
             ),
             row("dt   = \"10 ms\"", "steps = 1_000_000_000_000", "analysis.steps", "1000000000000 is out of range"),
-            row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps to the end; at most 1e9 are possible"),
+            row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps of dt to the end; at most 1e9 are possible"),
             row("every  = \"0.1 s\"", "every = 0", "output.every", "0 is out of range; allowed: every > 0"),
             row("times  = [\"0.25 s\", 0.75]", "times = [1e-9]", "output.times", "allowed: at least 1e-6 dt"),
             row("at       = \"0.5 s\"", "at = 1e-9", "check.0.at", "allowed: at least 1e-6 dt"),

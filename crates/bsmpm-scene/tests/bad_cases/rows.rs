@@ -101,7 +101,7 @@ pub const RANGES: &[Row] = &[
     row("end  = \"1 s\"", "end  = 0", "analysis.end", "allowed: end > 0"),
     row("\"10 ms\"", "0", "analysis.dt", "allowed: dt > 0"),
     row("\"10 ms\"", "\"2 s\"", "analysis.dt", "dt <= end = 1"),
-    row("\"10 ms\"", "1e-12", "analysis.dt", "steps to the end; at most"),
+    row("\"10 ms\"", "1e-12", "analysis.dt", "steps of dt to the end; at most"),
     row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "allowed: 1 <= steps"),
     row("dt   = \"10 ms\"", "steps = 1000000000000", "analysis.steps", "allowed: 1 <= steps <= 1000000000"),
     row("dt   = \"10 ms\"", "steps = -1", "analysis.steps", "-1 is out of range"),

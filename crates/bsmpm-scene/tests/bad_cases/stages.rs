@@ -151,6 +151,14 @@ pub const STAGES_OF_ONE: &[Row] = &[
     .down(2),
     row(
         "[output]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\n[[point_load]]\nat = [1.0, 0.5]\nforce = [0, -1]\n\
+         amplitude = [[2.0, 1.0]]\n[output]",
+        "strength_reduction.stage",
+        "a load still changes at the end of that stage",
+    )
+    .down(2),
+    row(
+        "[output]",
         "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\n[[stage]]\nat = 0.5\nstrength_reduction = 1.1\n[output]",
         "strength_reduction.stage",
         "stage.0 divides the strength, too",

@@ -7,6 +7,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Law, Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
+use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
     BackgroundKind, Case, Counted, Error, Every, Extent, Face, GridAxis, Place, Quadrature, Quantity, Site, Support,
@@ -345,16 +346,20 @@ fn doubtful_cases_are_warned_of() {
 /// A drain above the water table is a pond where the ground takes in what a step brings.
 #[test]
 fn drains_that_feed_the_ground_are_warned_of() {
-    let warned = |set: &[&str]| {
+    let warned = |base: &str, set: &[&str]| {
         let common = ["gravity={ acceleration = [0, -9.81] }", "water.level=0.2"];
-        let warnings = valid(SEEPING, &[&common[..], set].concat()).warnings;
+        let warnings = valid(base, &[&common[..], set].concat()).warnings;
         warnings.iter().filter(|warning| warning.contains("is fed as by a pond")).cloned().collect::<Vec<_>>()
     };
+    let full = SEEPING.replace("retention        = { alpha = 2.0, n = 1.5, residual = 0.1 }", "");
     let (permeable, quick) = ("material.clay.permeability=1e-5", "analysis.dt_max=3600");
-    let found = warned(&[permeable]);
+    let found = warned(&full, &[permeable]);
     assert!(found.len() == 1 && found[0].starts_with("drain.4: ") && found[0].contains("51.8 cells"), "{found:?}");
-    assert!(warned(&[]).is_empty() && warned(&[permeable, quick]).is_empty());
-    assert!(warned(&[permeable, "water.level=1.0"]).is_empty());
+    assert!(warned(&full, &[]).is_empty() && warned(&full, &[permeable, quick]).is_empty());
+    // Its suction is lost in short steps, too.
+    let found = warned(SEEPING, &[permeable, quick, "analysis.end=72000"]);
+    assert!(found.len() == 1 && found[0].contains(".7 cells of water in the run"), "{found:?}");
+    assert!(warned(SEEPING, &[permeable, "water.level=1.0"]).is_empty());
 }
 
 #[test]
@@ -372,4 +377,18 @@ fn a_body_spins_about_its_place() {
     assert_eq!(seen, 8, "two cells of four points");
     let message = format!("{:?}", set(STATIC, &["body.0.spin={ rate = 2.0, about = [0, 0] }"]).expect_err("at rest"));
     assert!(message.contains("has no meaning in a quasi-static analysis"), "{message}");
+}
+
+/// Ground that no water can flow through fails without drainage, unless the case says otherwise.
+#[test]
+fn strength_falls_as_the_ground_can_drain() {
+    let at_rest = |set: &[&str]| {
+        let common = ["strength_reduction={ factor = 1.2, stage = \"end\" }"];
+        valid(SEEPING, &[&common[..], set].concat()).flow.map(|flow| flow.at_rest)
+    };
+    assert_eq!(at_rest(&[]), Some(Motion::Held));
+    assert_eq!(at_rest(&["strength_reduction.drainage=undrained"]), Some(Motion::Undrained));
+    let tight = ["drain=[]", "inflow=[]", "history=[]", "body.*.material=tight"];
+    assert_eq!(at_rest(&tight), Some(Motion::Undrained));
+    assert_eq!(at_rest(&[&tight[..], &["strength_reduction.drainage=drained"]].concat()), Some(Motion::Held));
 }

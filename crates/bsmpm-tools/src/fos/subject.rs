@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
 use bsmpm::water::ambient::Ambient;
+use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::Word;
-use bsmpm_scene::{Acting, Case, Counted, MotionPath, Quantity, Traction};
+use bsmpm_scene::{Case, Counted, MotionPath, Quantity, Traction};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
@@ -97,8 +98,10 @@ impl Subject {
         set: &[String],
         (from, (stage, undrained)): (f64, (Option<&str>, bool)),
     ) -> Result<Self, Error> {
-        if set.iter().any(|set| set.trim_start().starts_with("strength_reduction")) {
-            return Err(Error::Usage { reason: format!("--set {FACTOR}: the factor is what the search sets") });
+        if let Some(set) = set.iter().map(|set| set.trim_start()).find(|set| set.starts_with("strength_reduction")) {
+            let key = set.split('=').next().unwrap_or(set).trim_end();
+            let reason = format!("--set {key}: the search sets that; of a stage: --stage, and --undrained");
+            return Err(Error::Usage { reason });
         }
         let bytes = case::load(path)?;
         let mut set = set.to_vec();
@@ -131,17 +134,16 @@ impl Subject {
             set.push(UNDRAINED.to_owned());
         }
         let trial = |factor: f64| [&set[..], &reduction(factor, conditions.stiffness)].concat();
-        let end = |factor: f64, further: &[String]| {
-            parsed(path, &bytes, &[&trial(factor)[..], further].concat()).map(|case| case.analysis.end)
-        };
+        let parsed = |factor: f64, further: &[String]| parsed(path, &bytes, &[&trial(factor)[..], further].concat());
         let unloaded = if is_whole { Vec::new() } else { vec![format!("{UNLOADED}=true")] };
-        let (end, elastic_end) = (end(from, &[])?, end(ELASTIC, &unloaded)?);
+        let (first, elastic_end) = (parsed(from, &[])?, parsed(ELASTIC, &unloaded)?.analysis.end);
+        let end = first.analysis.end;
         if let Some((_, until)) = &stage {
             // The first one is of the whole strength.
             conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
         }
         let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
-        let holds_water = case.flow.is_some() && !undrained;
+        let holds_water = first.flow.is_some_and(|flow| flow.at_rest == Motion::Held);
         Ok(Self {
             path,
             bytes,
@@ -306,14 +308,9 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
         (
-            until.is_some_and(|until| still_grows(case, until)),
-            "a load still changes at the end of that stage, and would go on while the strength falls: let its ramp or amplitude \
-             end before",
-        ),
-        (
-            level_moves(case, until),
+            until.is_none() && level_moves(case),
             "water.level_path: the factor would be that of whatever the level is as strength falls: give the level that is \
-             meant, or --stage NAME of a stage at whose end the level rests",
+             meant, or --stage NAME: it stays as it is at the end of that stage",
         ),
         (
             !case.rigid.is_empty(),
@@ -345,26 +342,10 @@ fn amplitudes(case: &Case) -> impl Iterator<Item = &[(f64, f64)]> {
     tractions.chain(case.point_loads.iter().map(|load| &load.amplitude[..]))
 }
 
-/// Whether a load that acts until a time does not act in full then, or changes later.
-fn still_grows(case: &Case, until: f64) -> bool {
-    let before = case.just_before(until);
-    let ends = |load: usize, ramp: f64| case.acts_since(Acting::Load(load), before).map_or(0.0, |since| since + ramp);
-    // From the last row before which it has another value; it begins with none.
-    let rests = |rows: &[(f64, f64)]| {
-        let values = std::iter::once(0.0).chain(rows.iter().map(|row| row.1));
-        rows.iter().zip(values).filter(|(row, before)| row.1 != *before).map(|(row, _)| row.0).fold(0.0, f64::max)
-    };
-    let ramps = case.tractions.iter().map(|load| load.ramp).chain(case.point_loads.iter().map(|load| load.ramp));
-    let loads = ramps.zip(amplitudes(case)).enumerate();
-    let ends = loads.map(|(load, (ramp, rows))| ends(load, ramp.max(rests(rows))));
-    ends.chain(case.gravity.iter().map(|gravity| gravity.ramp)).any(|end| end > until * (1.0 + 1e-9))
-}
-
 /// Whether the water rises or falls while strength is reduced.
-fn level_moves(case: &Case, until: Option<f64>) -> bool {
+fn level_moves(case: &Case) -> bool {
     let Some(Ambient::Level(rows)) = case.water.as_ref().map(|water| &water.table) else { return false };
-    let after = |t: f64| rows.partition_point(|row| row.0 <= t).saturating_sub(1);
-    rows[after(until.unwrap_or(0.0))..].windows(2).any(|pair| pair[0].1 != pair[1].1)
+    rows.windows(2).any(|pair| pair[0].1 != pair[1].1)
 }
 
 fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {

@@ -6,12 +6,12 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
 use crate::validate::{place, site};
-use crate::words::{AnalysisType, Failure, Side, Word};
+use crate::words::{AnalysisType, Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{Given, Soil};
+use bsmpm::water::flow::{Given, Motion, Soil};
 
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
 const POINTS_OF_CUBIC: usize = 4;
@@ -53,7 +53,7 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     discretised(case, root, report);
     of_soils(case, flow, root, report);
     acting(case, root, report);
-    divided(root, report);
+    divided(flow, root, report);
     timed(case, root, report);
     drained(case, flow, report);
     ponds(case, flow, report);
@@ -200,10 +200,10 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
 }
 
 /// Strength that is divided.
-fn divided(root: &Record, report: &mut Report<'_>) {
+fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
     let Some(reduction) = root.record("strength_reduction") else { return };
-    let rests = reduction.word("drainage") != Some(Failure::Undrained);
-    if reduction.gives("stage") && rests {
+    let unloaded = reduction.flag("unloaded") == Some(true);
+    if reduction.gives("stage") && flow.at_rest == Motion::Held && !unloaded {
         report.warn(format!("strength_reduction.stage: {HELD_WATER}"));
     } else if !reduction.gives("stage") {
         let message = "strength that is reduced from the start on is not shown to be right with water that flows: give \
@@ -255,13 +255,16 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     };
     let permeability = |soil: &Soil<3>| soil.permeability.as_ref().map_or(0.0, |k| k.along.max());
     let most = flow.soils.iter().flatten().map(permeability).fold(0.0, f64::max);
-    let dt = case.analysis.growth.map_or(case.analysis.dt, |(_, longest)| longest.min(case.analysis.end));
-    let way = most * dt / cell;
+    let end = case.analysis.end;
+    let dt = case.analysis.growth.map_or(case.analysis.dt, |(_, longest)| longest.min(end));
+    // What has suction loses it in however many steps.
+    let (time, told) = if flow.retains() { (end, "the run") } else { (dt, "a step") };
+    let way = most * time / cell;
     for (number, drain) in flow.drains.iter().enumerate().filter(|(_, drain)| drain.given == Given::StillWater) {
         if way > FILM && places(drain, &case.grid).iter().any(dry) {
             report.warn(format!(
                 "drain.{number}: above the water table it holds the pressure of the air, and the ground there is fed as by \
-                 a pond, by up to {way:.1} cells of water in a step: give seepage = true (and soils a retention), or \
+                 a pond, by up to {way:.1} cells of water in {told}: give seepage = true (and soils a retention), or \
                  head where a pond stands"
             ));
         }
