@@ -85,7 +85,7 @@ impl IndicatorState {
         let young = model.materials.iter().map(|material| material.elastic().young).fold(0.0, f64::max);
         let noise = relative_pressure_noise(&model.grid, points, (model.weighting, young), halo)?;
         let energy = recorder.books().map(|books| {
-            let now = Stored::of(model, points, halo);
+            let now = Stored::of(model, (points, t), halo);
             let numbers = [books.flows.external.abs(), books.flows.plastic, books.start, now.kinetic + now.elastic];
             let largest = numbers.into_iter().fold(f64::MIN_POSITIVE, f64::max);
             Energy { closure: books.closure(now).abs() / largest, loss: books.flows.numerical() / largest }

@@ -167,7 +167,7 @@ impl<const D: usize> Recorder<D> {
         (t, report): (f64, &StepReport),
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
-        let energy = if model.balances_energy { self.energy(model, points, report, halo) } else { Vec::new() };
+        let energy = if model.balances_energy { self.energy(model, points, (t, report), halo) } else { Vec::new() };
         self.work.iter_mut().zip(&report.strips).for_each(|(sum, strip)| *sum += strip.work);
         let mut row = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
@@ -287,10 +287,10 @@ impl<const D: usize> Recorder<D> {
         &mut self,
         model: &Model<K, D>,
         points: &Points<D>,
-        report: &StepReport,
+        (t, report): (f64, &StepReport),
         halo: &dyn Halo,
     ) -> Vec<f64> {
-        let now = Stored::of(model, points, halo);
+        let now = Stored::of(model, (points, t), halo);
         let books = self.books.get_or_insert_with(|| Books::open(now));
         if let Some(step) = report.energy {
             books.flows += step;

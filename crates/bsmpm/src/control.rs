@@ -141,7 +141,7 @@ impl Stepper {
         self.at.nominal = Some((from, to));
         let before = (self.at.cuts, self.at.easy, self.at.budget);
         if model.regime == Regime::Dynamic && self.at.budget.is_none() {
-            self.at.budget = Some(Budget::open(Stored::of(model, points, halo)));
+            self.at.budget = Some(Budget::open(Stored::of(model, (points, self.at.t), halo)));
         }
         let (mut rejected, mut counts) = (Vec::new(), Counts::default());
         loop {

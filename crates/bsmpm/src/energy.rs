@@ -105,14 +105,19 @@ impl AddAssign for Flows {
 pub struct Stored {
     /// `Σ ½ m |v|²`
     pub kinetic: f64,
-    /// `Σ V0 (½ λ tr(ε)² + μ ε : ε)`, ε = ½ ln bᵉ, and `Σ V0 n p²/(2 K_w)` of water that flows
+    /// `Σ V0 (½ λ tr(ε)² + μ ε : ε)`, ε = ½ ln bᵉ, of water that flows `Σ V0 n p²/(2 K_w)`,
+    /// and where it leaves pores `- Σ V0 n ∫ p dS`
     pub elastic: f64,
 }
 
 impl Stored {
-    /// Of the points of all ranks.
-    pub fn of<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Self {
-        let sums = halo.total(&[kinetic(points), elastic(model, points)]);
+    /// Of the points of all ranks at time `t`, s.
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        model: &Model<K, D>,
+        (points, t): (&Points<D>, f64),
+        halo: &dyn Halo,
+    ) -> Self {
+        let sums = halo.total(&[kinetic(points), elastic(model, points, t)]);
         Self { kinetic: sums[0], elastic: sums[1] }
     }
 }
@@ -209,7 +214,7 @@ impl Draft {
             flows.plastic += &water.seepage;
             flows.integration += &water.stored;
             flows.integration += &water.tau;
-            elastic += &water.compressed;
+            elastic += &water.held;
         }
         let dry = nodes.pores.is_some().then(|| points.mass.to_vec());
         let mut draft = Self { flows, elastic, dry, rubbed, t, dt };
@@ -235,7 +240,7 @@ impl Draft {
         };
         flows.integration.extend(transfer::gradients::<K, D, _>((shape, &points.x), u, work_of));
         flows.integration -= &self.elastic;
-        flows.integration += &elastic(model, points);
+        flows.integration += &elastic(model, points, self.t);
         flows.smoothing += &self.elastic;
         flows.transfer += &kinetic(points);
         add_inertia(flows, problem, u);
@@ -271,7 +276,7 @@ impl Draft {
         let mut sums = vec![external, own.plastic.clone(), moving.clone(), strained];
         if model.balances_energy {
             own.transfer -= &moving;
-            own.smoothing -= &elastic(model, points);
+            own.smoothing -= &elastic(model, points, t + dt);
             sums.extend(own.each().map(|flow| flow.clone()));
         }
         let sums = halo.total(&sums);
@@ -296,10 +301,10 @@ fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
 }
 
 /// A state that is no strain has no energy: not a number, like the step that led to it.
-fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Exact {
+fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: f64) -> Exact {
     let mut energy: Exact =
         (0..points.len()).map(|p| points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p))).collect();
-    energy += &work::in_points(model, points);
+    energy += &work::in_points(model, points, t);
     energy
 }
 

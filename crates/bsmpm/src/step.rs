@@ -99,7 +99,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     }
     points.surface = surface;
     points.free_field = free_field.columns;
-    let outflow = Outflow::of(model, points, halo);
+    let outflow = Outflow::of(model, (points, t + dt), halo);
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
     Ok(StepReport { energy, turnover, advance, smoothed, outflow, ..report })
 }

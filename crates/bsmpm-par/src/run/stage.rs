@@ -22,7 +22,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     fn begin_stage(&mut self, stage: &Stage) -> Result<(), StepError> {
         let stored = |simulation: &Simulation<'_, K, D>| {
             let Simulation { model, points, halo, .. } = simulation;
-            model.balances_energy.then(|| Stored::of(model, points, &**halo))
+            model.balances_energy.then(|| Stored::of(model, (points, stage.at), &**halo))
         };
         let before = stored(&self.simulation);
         let next = model::model_at(&self.case, stage.at);

@@ -144,7 +144,7 @@ const CONTACT: &[(&str, &str)] = &[("-closed", "part of the nodes"), ("-sliding"
 const GAP: &[(&str, &str)] = &[("-least", "the least"), ("-largest", "the largest")];
 const ENERGY: &[(&str, &str)] = &[
     ("-kinetic", "kinetic energy of the points"),
-    ("-elastic", "elastic energy of the points"),
+    ("-elastic", "elastic energy of the points, and what compressed water and pores that suction has emptied hold"),
     ("-plastic", "dissipated by plastic flow"),
     ("-external", "work of gravity, loads and what moves, less what friction at faces and faces that absorb take"),
     ("-numerical", "loss of the algorithm: the sum of the next five"),

@@ -20,11 +20,11 @@ pub struct Outflow {
 }
 
 impl Outflow {
-    /// Takes the points away that have left; `None` if none has. One reduction in a model with
+    /// Takes the points away that have left by the time `t`; `None` if none has. One reduction in a model with
     /// outlets.
     pub fn of<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
-        points: &mut Points<D>,
+        (points, t): (&mut Points<D>, f64),
         halo: &dyn Halo,
     ) -> Option<Self> {
         if model.boundary.outlets.is_empty() {
@@ -37,10 +37,10 @@ impl Outflow {
         if sums[0] == 0.0 {
             return None;
         }
-        let before = Stored::of(model, points, halo);
+        let before = Stored::of(model, (points, t), halo);
         let gone: HashSet<u64> = out.iter().map(|&p| points.id[p]).collect();
         points.remove(|id| gone.contains(&id));
-        let stored = [before, Stored::of(model, points, halo)];
+        let stored = [before, Stored::of(model, (points, t), halo)];
         Some(Self { points: sums[0] as u64, mass: sums[1], stored })
     }
 }

@@ -8,21 +8,23 @@ use crate::parallel::over_layers;
 use crate::points::Points;
 use crate::solve::found::Found;
 use crate::step::problem::Problem;
+use crate::water::flow::{Flow, Soil};
 use crate::water::residual::Flowing;
 
 /// J, on this rank; see the [books](crate::energy).
 #[derive(Clone, Debug)]
 pub struct Work {
-    /// `- dt sum V0 J w . drive - sum p out`: what drives water through the ground, and what comes in or goes out
+    /// `- dt sum V0 J w . drive - sum p out`: what drives water through the ground, and what comes in or goes out; less
+    /// what lifts the water that suction takes in above the still one
     pub external: Exact,
     /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative
     pub seepage: Exact,
-    /// `sum V0 p (zeta - zeta^n)`
+    /// `sum V0 p (zeta - zeta^n)`, above the still water of the whole pressure
     pub stored: Exact,
     /// of the term that makes the pair of splines stable
     pub tau: Exact,
-    /// in the water that is compressed, at the end
-    pub compressed: Exact,
+    /// in the water that is compressed and in the pores that suction has emptied, at the end
+    pub held: Exact,
 }
 
 impl Work {
@@ -30,7 +32,7 @@ impl Work {
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Option<Self> {
         let Problem { model, nodes, points, halo, .. } = *problem;
         let (pores, balance) = (nodes.pores.as_ref()?, found.water.as_ref()?);
-        let bulk = model.water.as_ref()?.flow.as_ref()?.bulk;
+        let (flow, weight) = model.water.as_ref().and_then(|water| Some((water.flow.as_ref()?, water.unit_weight)))?;
         let each = scalars::scalars(&pores.shape, &found.p, |p, pressure, gradient| {
             let Some(wet) = &pores.wet[p] else { return [0.0; 5] };
             let dF = found.trial.dF(p);
@@ -38,40 +40,49 @@ impl Work {
             let Some(state) = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient)) else {
                 return [f64::NAN; 5];
             };
+            let soil = flow.soils[usize::from(points.material[p])].as_ref();
+            let held = soil.map_or(0.0, |soil| held(flow, soil, state.pores, (pressure, state.whole), weight));
             let through = pores.dt * wet.volume;
             let fall = (0..D).map(|i| wet.drive[i] * (0..D).map(|j| dF[(i, j)] * state.flux[j]).sum::<f64>());
             let fall = -through * fall.sum::<f64>();
+            let taken = wet.volume * (state.content - wet.content);
+            // What suction keeps above the still water has been lifted there.
+            let lifted = (wet.ambient - wet.borne) * taken;
             [
-                fall,
+                fall + lifted,
                 fall - through * state.flux.dot(&gradient),
-                wet.volume * pressure * (state.content - wet.content),
-                wet.tau_of(gradient).dot(&gradient),
-                wet.volume * compressed(state.pores, pressure, bulk),
+                pressure * taken + lifted,
+                state.lumped * wet.tau_of(gradient).dot(&gradient),
+                wet.volume * held,
             ]
         });
         let sum = |k: usize| -> Exact { each.iter().map(|of| of[k]).collect() };
         let mut external = sum(0);
         external -= &pores.drainage.work(&found.p);
         external -= &over_layers(halo, 1, |node| found.p[node] * balance.out[node]);
-        Some(Self { external, seepage: sum(1), stored: sum(2), tau: sum(3), compressed: sum(4) })
+        Some(Self { external, seepage: sum(1), stored: sum(2), tau: sum(3), held: sum(4) })
     }
 }
 
-/// J  in the water of the points, compressed by the excess pressure; nothing where water is incompressible.
-pub fn in_points<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Exact {
-    let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
-    let Some((flow, pressure)) = flow.zip(points.pore_pressure.as_ref()) else { return Exact::ZERO };
+/// J  in the water of the points at time `t`, and in the pores that suction has emptied.
+pub fn in_points<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: f64) -> Exact {
+    let flow = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?)));
+    let Some((water, flow)) = flow else { return Exact::ZERO };
     let of = |p: usize| {
+        let x = &points.x[p];
+        let excess = points.pore_pressure.as_ref().map_or_else(|| water.excess_at_start(x), |excess| excess[p]);
+        let still = if flow.retains() { water.still_pressure(x, t) } else { 0.0 };
         let soil = flow.soils[usize::from(points.material[p])].as_ref();
         soil.map_or(0.0, |soil| {
             let pores = soil.pores(points.F.at(p).determinant() * points.dilation_of(p));
-            points.volume[p] * compressed(pores, pressure[p], flow.bulk)
+            points.volume[p] * held(flow, soil, pores, (excess, excess + still), water.unit_weight)
         })
     };
     (0..points.len()).map(of).collect()
 }
 
-/// J/m^D  to p/K_w of it
-fn compressed(pores: f64, pressure: f64, bulk: f64) -> f64 {
-    0.5 * pores * pressure * pressure / bulk
+/// J/m^D  to the excess pressure from none, in water that is compressed; and to the `whole` one from full pores.
+fn held<const D: usize>(flow: &Flow<D>, soil: &Soil<D>, pores: f64, (excess, whole): (f64, f64), weight: f64) -> f64 {
+    let emptied = soil.retention.as_ref().map_or(0.0, |retention| retention.stored(whole, weight));
+    pores * (0.5 * excess * excess / flow.bulk + emptied)
 }

@@ -50,14 +50,14 @@ fn pulsed(n: usize, along: usize, kind: usize) -> Scene<PlaneStrain, 2> {
 fn left(mut scene: Scene<PlaneStrain, 2>, (n, kind): (usize, usize)) -> (f64, f64) {
     scene.model.balances_energy = true;
     let (model, halo) = (scene.model.clone(), scene.halo());
-    let start = Stored::of(&model, &scene.points, &halo);
+    let start = Stored::of(&model, (&scene.points, 0.0), &halo);
     let mut books = Books::open(start);
     let (dt, end) = (0.5 * 20.0 / n as f64 / speed(kind), 20.0 / speed(kind));
     let mut now = start;
     scene.march(dt, end, |points, accepted| {
         assert!(accepted.rejected.is_empty());
         books.flows += accepted.report.energy.expect("it is balanced");
-        now = Stored::of(&model, points, &halo);
+        now = Stored::of(&model, (points, 0.0), &halo);
     });
     ((now.kinetic + now.elastic) / start.kinetic, books.closure(now) / start.kinetic)
 }

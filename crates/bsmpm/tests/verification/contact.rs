@@ -71,7 +71,7 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
     let a = G * (theta.sin() - friction * theta.cos());
     let mut scene = block(n, 0.5, rough(friction), Regime::Dynamic);
     (scene.model.nonlinear, scene.model.balances_energy) = (method, true);
-    let mut books = Books::open(Stored::of(&scene.model, &scene.points, &scene.halo()));
+    let mut books = Books::open(Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()));
     let (mut iterations, mut dissipated) = (0, 0.0);
     scene.march(dt, END, |_, accepted| {
         assert!(used(accepted) <= friction * (1.0 + 1e-12) && accepted.rejected.is_empty(), "{:?}", accepted.rejected);
@@ -80,7 +80,7 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
         iterations = iterations.max(accepted.report.iterations);
     });
     let way = mean(&scene.points, |p| scene.points.u[p][0]);
-    let now = Stored::of(&scene.model, &scene.points, &scene.halo());
+    let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
     assert!(books.closure(now).abs() < 1e-6 * now.kinetic, "the books close: {:.1e}", books.closure(now));
     let rubbed = friction * theta.cos() * weight(&scene) * way;
     assert!((dissipated / rubbed - 1.0).abs() < 0.01, "{dissipated} of {rubbed} J");
@@ -182,7 +182,7 @@ fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
         .support(Support::contact(0, false, rough(0.0)))
         .with_mass(mass);
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
-    let (start, body) = (Stored::of(&scene.model, &scene.points, &scene.halo()), weight(&scene) / G);
+    let (start, body) = (Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()), weight(&scene) / G);
     let (mut impulse, mut from, mut to) = (0.0, f64::INFINITY, 0.0_f64);
     scene.march(0.5 * h / c, 0.3, |_, accepted| {
         let push = accepted.report.reactions[2][0];
@@ -193,7 +193,7 @@ fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
         }
     });
     assert!((from - 0.2).abs() <= 0.5 * h / c, "the bar meets the wall at {from} s");
-    let end = Stored::of(&scene.model, &scene.points, &scene.halo());
+    let end = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
     // A consistent mass also takes away what the points bring along to nodes that rest, in every step.
     let taken = velocity(&scene.points) + 1.0 - impulse / body;
     assert!(taken.abs() < if mass == MassMatrix::Lumped { 1e-6 } else { 0.02 }, "momentum is the impulse: {taken}");

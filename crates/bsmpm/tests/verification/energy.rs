@@ -40,7 +40,7 @@ impl Course {
 fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: f64) -> Course {
     scene.model.balances_energy = true;
     let (model, halo) = (scene.model.clone(), scene.halo());
-    let stored = Stored::of(&model, &scene.points, &halo);
+    let stored = Stored::of(&model, (&scene.points, 0.0), &halo);
     let mut course = Course { books: Books::open(stored), stored, largest: 0.0, closure: 0.0 };
     scene.march(dt, end, |points, accepted| {
         let step = accepted.report.energy.expect("the model balances energy");
@@ -48,7 +48,7 @@ fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: 
         course.books.flows += step;
         let turnover = accepted.report.turnover.expect("whatever balances energy has it");
         assert_eq!((turnover.external, turnover.plastic), (step.external, step.plastic));
-        course.stored = Stored::of(&model, points, &halo);
+        course.stored = Stored::of(&model, (points, accepted.t), &halo);
         let Course { books, stored, .. } = course;
         let energies = [stored.kinetic, stored.elastic, books.flows.plastic, books.flows.external.abs()];
         course.largest = energies.into_iter().fold(course.largest, f64::max);

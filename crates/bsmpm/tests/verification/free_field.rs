@@ -55,7 +55,7 @@ fn level_ground_moves_as_its_column_everywhere() {
     let mut follows = between(ground((6, 1.0), 1e-3, 0.5), Support::free_field);
     follows.model.balances_energy = true;
     let (model, halo) = (follows.model.clone(), follows.halo());
-    let mut books = Books::open(Stored::of(&model, &follows.points, &halo));
+    let mut books = Books::open(Stored::of(&model, (&follows.points, 0.0), &halo));
     let (mut worst, mut largest, mut columns) = (0.0_f64, 0.0_f64, Vec::new());
     follows.march(0.005, 0.3, |points, accepted| {
         for column in &points.free_field {
@@ -65,7 +65,7 @@ fn level_ground_moves_as_its_column_everywhere() {
         books.flows += accepted.report.energy.expect("it is balanced");
         columns.push(points.free_field[0].clone());
     });
-    let closure = books.closure(Stored::of(&model, &follows.points, &halo)) / books.flows.external;
+    let closure = books.closure(Stored::of(&model, (&follows.points, 0.0), &halo)) / books.flows.external;
     // 5.2e-7 and 2.9e-10.
     assert!(worst < 1e-6 * largest && closure.abs() < 1e-8, "{:e}, {closure:e}", worst / largest);
     for side in [Support::roller as Side, Support::absorbing] {

@@ -95,7 +95,7 @@ fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
     let theta = 0.5_f64.atan();
     let mut scene = block(n, 0.5, FRICTION, Regime::Dynamic);
     (scene.model.nonlinear, scene.model.balances_energy) = (method, true);
-    let mut books = Books::open(Stored::of(&scene.model, &scene.points, &scene.halo()));
+    let mut books = Books::open(Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()));
     let mut iterations = 0;
     scene.march(dt, END, |_, accepted| {
         books.flows += accepted.report.energy.expect("it is balanced");
@@ -103,7 +103,7 @@ fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
         let force = accepted.report.rigid[0].force;
         assert!(accepted.rejected.is_empty() && force[0] <= FRICTION * -force[1] * (1.0 + 1e-12));
     });
-    let now = Stored::of(&scene.model, &scene.points, &scene.halo());
+    let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
     assert!(books.closure(now).abs() < 1e-6 * now.kinetic, "the books close: {:.1e}", books.closure(now));
     let exact = G * (theta.sin() - FRICTION * theta.cos()) * (END - 0.5 * RAMP);
     (velocity(&scene.points) / exact - 1.0, iterations)
@@ -151,7 +151,7 @@ fn bar(cells: usize, gap: f64) -> [f64; 3] {
         assert!(accepted.report.rigid[0].force[0] <= 0.0, "it pulls");
         pushed += usize::from(accepted.report.rigid[0].touched > 0);
     });
-    let now = Stored::of(&scene.model, &scene.points, &scene.halo());
+    let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
     let mass: f64 = scene.points.mass.iter().sum();
     let energy = (now.kinetic + now.elastic) / (0.5 * mass * v * v);
     [(pushed - 1) as f64 * dt * c / 2.0, velocity(&scene.points) / v, energy]
@@ -264,7 +264,7 @@ fn pressed(steps: usize) -> f64 {
     scene.march(RAMP / steps as f64, RAMP, |_, accepted| {
         work = accepted.report.rigid.iter().map(|rigid| rigid.work).sum();
     });
-    work / Stored::of(&scene.model, &scene.points, &scene.halo()).elastic - 1.0
+    work / Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()).elastic - 1.0
 }
 
 /// At a strain of .04; at a tenth of it a tenth of that is left.

@@ -26,7 +26,7 @@ fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
     scene.model.mass = mass;
     let (model, halo) = (scene.model.clone(), scene.halo());
     let energy = |points: &Points<2>| {
-        let stored = Stored::of(&model, points, &halo);
+        let stored = Stored::of(&model, (points, 0.0), &halo);
         stored.kinetic + stored.elastic
     };
     let start = [observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo)[2], energy(&scene.points)];

@@ -4,9 +4,11 @@
 use super::{Plane, WEIGHT, at, run, through};
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Support, SurfacePoint};
+use bsmpm::energy::{Books, Stored};
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
+use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::{Course, Drain, DrainedFace, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil};
 use bsmpm::water::retention::Retention;
 
@@ -119,6 +121,37 @@ fn steady_columns_follow_the_equation_of_richards() {
             assert!((gained + out).abs() < 1e-4 * gained.abs() + 1e-12, "{gained:e} of {:e}", -out);
         }
     }
+}
+
+/// Rain gives up the work of its fall to seepage and what suction had put into the pores, and nothing is left over.
+#[test]
+fn the_books_of_rain_close_with_what_suction_stores() {
+    // Beside a water table the unknown is the excess over it, and the work of lifting water is that of the weight.
+    let lost = [(50.0, false), (25.0, false), (25.0, true)].map(|(dt, table)| {
+        let mut scene = column(10, 0.5 * K, false);
+        if table {
+            scene.model.water.as_mut().expect("there is water").ambient = Ambient::Level(vec![(0.0, 0.0)]);
+            scene.points.pore_pressure = Some(vec![0.0; scene.points.len()]);
+            flow(&mut scene).faces[0].given = Given::StillWater;
+        }
+        scene.model.balances_energy = true;
+        let (model, halo) = (scene.model.clone(), scene.halo());
+        let stored = |points: &Points<2>| Stored::of(&model, (points, 0.0), &halo);
+        let (start, mut now) = (stored(&scene.points), Stored::default());
+        let mut books = Books::open(start);
+        run(&mut scene, (1..).map(|k| dt * f64::from(k)).take_while(|t| *t <= 20e3), |_, points, report| {
+            books.flows += report.energy.expect("books are kept");
+            now = stored(points);
+        });
+        let given = start.elastic - now.elastic;
+        let (spent, lost) = (books.flows.plastic / given, books.flows.numerical() / given);
+        let (put_in, left) = (books.flows.external / given, books.closure(now) / given);
+        println!("{dt} s, {table}: of {given:.4} J from pores, {put_in:.4} put in: seepage {spent:.4}, lost {lost:.4}, left {left:.1e}");
+        assert!(given > 0.0 && spent > 0.0 && left.abs() < 1e-6);
+        lost
+    });
+    assert!(lost[0].abs() < 0.01 && (lost[1] / lost[0]).abs() < 0.6, "of first order in the step: {lost:?}");
+    assert!(lost[2].abs() < 0.01, "{lost:?}");
 }
 
 #[test]
