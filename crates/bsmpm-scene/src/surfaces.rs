@@ -73,24 +73,9 @@ pub fn name_of_strip(case: &Case, strip: usize) -> String {
 
 /// Tractions, then point loads, once the stages until the time `t` have begun.
 pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f64) -> Vec<Load<D>> {
-    let place = |at: [f64; 2]| vector(case.grid.local(at));
     let placed = |at: [f64; 3]| vector::<D, _>(at) - vector(case.grid.lower());
-    let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
     let tractions = case.tractions.iter().map(|traction| {
-        let (points, left): (Vec<_>, Vec<_>) = match traction.line {
-            LoadedLine::Segment { from, to } => {
-                let (from, to) = (place(from), place(to));
-                let points = surface::along::<K, D>(grid, &from, &to, across);
-                points.into_iter().map(|point| (point, normal(&from, &to))).unzip()
-            }
-            LoadedLine::Circle { center, radius } => {
-                around::<K, D>(grid, &place(center), radius, across).into_iter().unzip()
-            }
-            LoadedLine::Plate(plate) => {
-                let points = on_plate::<K, D>(case, grid, &plate, across);
-                points.into_iter().map(|point| (point, unit(plate.normal()))).unzip()
-            }
-        };
+        let (points, left) = on_line::<K, D>(case, grid, &traction.line);
         let height = |point: &SurfacePoint<D>| point.x[D - 1] + case.grid.lower()[D - 1];
         let (values, follows) = match traction.push {
             Push::Stress(stress) => {
@@ -118,6 +103,30 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
         Some(_) => load,
     };
     tractions.chain(forces).enumerate().map(switched).collect()
+}
+
+/// Points of a line, with unit normals to the left of a segment, towards the middle of a circle, along a plate's axis.
+fn on_line<K: Kinematics<D>, const D: usize>(
+    case: &Case,
+    grid: &Grid<D>,
+    line: &LoadedLine,
+) -> (Vec<SurfacePoint<D>>, Vec<Vector<D>>) {
+    let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
+    let place = |at: [f64; 2]| vector(case.grid.local(at));
+    match *line {
+        LoadedLine::Segment { from, to } => {
+            let (from, to) = (place(from), place(to));
+            let points = surface::along::<K, D>(grid, &from, &to, across);
+            points.into_iter().map(|point| (point, normal(&from, &to))).unzip()
+        }
+        LoadedLine::Circle { center, radius } => {
+            around::<K, D>(grid, &place(center), radius, across).into_iter().unzip()
+        }
+        LoadedLine::Plate(plate) => {
+            let points = on_plate::<K, D>(case, grid, &plate, across);
+            points.into_iter().map(|point| (point, unit(plate.normal()))).unzip()
+        }
+    }
 }
 
 /// The course of a load that begins at the time `since`, where nothing of it acts yet.
@@ -186,33 +195,17 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
     t: f64,
 ) -> Option<bsmpm::water::flow::Flow<D>> {
     let flow = case.flow.as_ref()?;
-    let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
-    let surface = |lines: &[[[f64; 2]; 2]]| -> (Vec<SurfacePoint<D>>, Vec<Vector<D>>) {
-        let of = |line: &[[f64; 2]; 2]| {
-            let [from, to] = line.map(|at| vector(case.grid.local(at)));
-            let points = surface::along::<K, D>(grid, &from, &to, across);
-            points.into_iter().map(move |point| (point, normal(&from, &to)))
-        };
-        lines.iter().flat_map(of).unzip()
-    };
     let base = case.grid.lower()[D - 1];
     let given = |given: &Given| match given {
         Given::Head(Course(rows)) => Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - base)).collect())),
         other => other.clone(),
     };
-    let flat = |plate: &Plate| {
-        let points = on_plate::<K, D>(case, grid, plate, across);
-        points.into_iter().map(|point| (point, unit(plate.normal()))).unzip()
-    };
     let drain = |drain: &crate::Drain| {
-        let (points, normals) = match &drain.site {
-            DrainSite::Face(_) => return None,
-            DrainSite::Lines(lines) => surface(lines),
-            DrainSite::Circle { center, radius } => {
-                around::<K, D>(grid, &vector(case.grid.local(*center)), *radius, across).into_iter().unzip()
-            }
-            DrainSite::Plate(plate) => flat(plate),
-        };
+        if matches!(drain.site, DrainSite::Face(_)) {
+            return None;
+        }
+        let parts = drain.site.lines().into_iter().map(|line| on_line::<K, D>(case, grid, &line));
+        let (points, normals) = parts.flat_map(|(points, normals)| points.into_iter().zip(normals)).unzip();
         Some(Drain { points, normals, given: given(&drain.given) })
     };
     let face = |drain: &crate::Drain| match drain.site {
@@ -220,11 +213,12 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
         DrainSite::Lines(_) | DrainSite::Circle { .. } | DrainSite::Plate(_) => None,
     };
     let inflow = |inflow: &crate::Inflow| {
-        let (points, normals) = match &inflow.site {
-            Site::Segment { from, to } => surface(&[[*from, *to]]),
-            Site::Plate(plate) => flat(plate),
-            Site::Face(_) => (Vec::new(), Vec::new()),
+        let line = match inflow.site {
+            Site::Segment { from, to } => Some(LoadedLine::Segment { from, to }),
+            Site::Plate(plate) => Some(LoadedLine::Plate(plate)),
+            Site::Face(_) => None,
         };
+        let (points, normals) = line.map(|line| on_line::<K, D>(case, grid, &line)).unwrap_or_default();
         Inflow { points, normals, rate: inflow.rate.clone(), runs_off: inflow.runs_off }
     };
     Some(bsmpm::water::flow::Flow {

@@ -15,6 +15,10 @@ use bsmpm_scene::{Regime, Sketch, SketchedHistory};
 
 use crate::Error;
 
+/// s
+const DAY: f64 = 86_400.0;
+const YEAR: f64 = 365.25 * DAY;
+
 /// The files of a run; those that are not there yet are none.
 pub(crate) struct RunRecord {
     pub directory: PathBuf,
@@ -109,7 +113,13 @@ impl RunRecord {
 
     /// A moment in words, for titles and legends.
     pub fn moment(&self, time: f64) -> String {
-        if self.is_timeless() { format!("pseudo-time {}", short(time)) } else { format!("t = {} s", short(time)) }
+        if self.is_timeless() {
+            return format!("pseudo-time {}", short(time));
+        }
+        // From two of them on, in the units in which consolidation is spoken of.
+        let units = [("years", YEAR), ("d", DAY)];
+        let (unit, length) = units.into_iter().find(|(_, length)| time >= 2.0 * length).unwrap_or(("s", 1.0));
+        format!("t = {} {unit}", short(time / length))
     }
 
     /// Whether the grid's lower and upper faces along the axes of pictures hold the body.

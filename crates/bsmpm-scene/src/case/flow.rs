@@ -1,6 +1,6 @@
 //! Water that flows.
 
-use super::{Case, Face, Plate, Site};
+use super::{Case, Face, LoadedLine, Plate, Site};
 use bsmpm::water::flow::{Course, Given, Motion, Soil};
 
 /// Pore water whose excess pressure is an unknown.
@@ -52,6 +52,20 @@ pub enum DrainSite {
     },
     /// Of a solid: a part of bodies' surfaces at the start.
     Plate(Plate),
+}
+
+impl DrainSite {
+    /// Its parts, but for a face of the grid.
+    pub fn lines(&self) -> Vec<LoadedLine> {
+        match self {
+            Self::Face(_) => Vec::new(),
+            Self::Lines(pieces) => {
+                pieces.iter().map(|[from, to]| LoadedLine::Segment { from: *from, to: *to }).collect()
+            }
+            Self::Circle { center, radius } => vec![LoadedLine::Circle { center: *center, radius: *radius }],
+            Self::Plate(plate) => vec![LoadedLine::Plate(*plate)],
+        }
+    }
 }
 
 /// A surface through which water is put in.

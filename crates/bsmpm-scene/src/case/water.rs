@@ -17,12 +17,12 @@ impl Water {
     /// The same with heights and places from the lower corner of a grid.
     pub(crate) fn from(&self, grid: &GridSpec) -> Ambient {
         let (left, base) = (grid.lower()[0], grid.lower()[grid.dims() - 1]);
-        let lowered = |rows: &[(f64, f64)], by: f64| rows.iter().map(|row| (row.0 - by, row.1 - base)).collect();
-        match &self.table {
-            Ambient::None => Ambient::None,
-            Ambient::Level(rows) => Ambient::Level(lowered(rows, 0.0)),
-            Ambient::Line(rows) => Ambient::Line(lowered(rows, left)),
+        let mut table = self.table.clone();
+        if let Ambient::Line(places) = &mut table {
+            places.iter_mut().for_each(|place| place.x -= left);
         }
+        table.levels_mut().into_iter().flatten().for_each(|row| row.1 -= base);
+        table
     }
 }
 

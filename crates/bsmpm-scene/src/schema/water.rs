@@ -29,6 +29,13 @@ pub(super) static WATER: Table = Table {
             "rows [x, y] of a phreatic line instead, x increasing; linear between, level beyond. The pressure is that of the \
              depth straight below it",
         ),
+        key(
+            "line_path",
+            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY), (In::Length, Range::ANY)]),
+            Optional,
+            "rows [t, x, y] instead: lines of the same places x at times t, which does not fall; linear between them, \
+             constant before the first and after the last",
+        ),
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Default("\"9.81 kN/m3\""), "of the water"),
         key(
             "bulk",
@@ -50,5 +57,5 @@ pub(super) static WATER: Table = Table {
             "what the pore water of materials without their own drainage does; given unless given",
         ),
     ],
-    exclusive: &[one_of(&["level", "level_path", "line"], false)],
+    exclusive: &[one_of(&["level", "level_path", "line", "line_path"], false)],
 };

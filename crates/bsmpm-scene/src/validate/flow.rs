@@ -81,8 +81,8 @@ fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64>
     if !retains {
         water.error(KEY, "no soil keeps water under suction: give a material a retention", report);
     }
-    if ["level", "level_path", "line"].iter().all(|key| !water.gives(key)) {
-        water.error(KEY, "is that above a level: give level, level_path or line", report);
+    if ["level", "level_path", "line", "line_path"].iter().all(|key| !water.gives(key)) {
+        water.error(KEY, "is that above a level: give level, level_path, line or line_path", report);
     }
     water.number(KEY)
 }

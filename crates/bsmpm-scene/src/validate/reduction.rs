@@ -8,7 +8,6 @@ use crate::report::{Report, shortened};
 use crate::words::Failure;
 use bsmpm::model::Regime;
 use bsmpm::schedule::between;
-use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::Motion;
 
 /// Parts of a step by which stages lie apart.
@@ -189,10 +188,8 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
 
 /// Lets the water's level stay where it is at the time `until`.
 fn stay(case: &mut Case, until: f64) {
-    if let Some(water) = &mut case.water
-        && let Some((level, _)) = water.table.table(0.0, until)
-        && let Ambient::Level(rows) = &mut water.table
-    {
+    for rows in case.water.iter_mut().flat_map(|water| water.table.levels_mut()) {
+        let Some(level) = between(rows, rows[0].1, until).or(rows.last().map(|row| row.1)) else { continue };
         rows.retain(|row| row.0 < until);
         rows.push((until, level));
     }
@@ -202,7 +199,7 @@ fn stay(case: &mut Case, until: f64) {
 /// to it until `end`.
 fn settle(case: &mut Case, until: f64, end: f64) {
     stay(case, until);
-    if let Some(Ambient::Level(rows)) = case.water.as_mut().map(|water| &mut water.table) {
+    for rows in case.water.iter_mut().flat_map(|water| water.table.levels_mut()) {
         rows.drain(..rows.len() - 1);
     }
     let loads = 0..case.tractions.len() + case.point_loads.len();

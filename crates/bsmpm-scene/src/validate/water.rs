@@ -7,7 +7,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Side, Word};
-use bsmpm::water::ambient::Ambient;
+use bsmpm::water::ambient::{Ambient, LevelAt};
 
 /// Slope of a phreatic line up to which the depth straight below it is taken for the pressure without a word: along a
 /// slope that water flows down in parallel it is cos^2 less, 6 % here.
@@ -28,9 +28,10 @@ pub(super) fn read(
         }
         return None;
     };
-    if ["level", "level_path", "line"].iter().all(|key| !record.gives(key)) {
+    if ["level", "level_path", "line", "line_path"].iter().all(|key| !record.gives(key)) {
         if !super::flow::flows(root) {
-            let message = "missing: one of level, level_path, line: no water flows, and there is none that is still";
+            let message =
+                "missing: one of level, level_path, line, line_path: no water flows, and there is none that is still";
             report.error(record.origin, &record.path, message);
         }
         return None;
@@ -63,27 +64,71 @@ pub(super) fn is_down(vector: &[f64]) -> bool {
 
 /// The water table, somewhere above the grid's base.
 fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Report<'_>) -> Option<Ambient> {
-    let (key, rows) = if record.gives("level") {
-        ("level", vec![(0.0, record.number("level")?)])
-    } else {
-        let key = if record.gives("line") { "line" } else { "level_path" };
-        (key, increasing(record, key, report)?.map(|row| (row[0], row[1])).collect())
+    let key = ["level", "level_path", "line", "line_path"].into_iter().find(|key| record.gives(key))?;
+    let rows = |report: &mut Report<'_>| Some(increasing(record, key, report)?.map(|row| (row[0], row[1])));
+    let table = match key {
+        "level" => Ambient::Level(vec![(0.0, record.number("level")?)]),
+        "level_path" => Ambient::Level(rows(report)?.collect()),
+        "line" => Ambient::Line(rows(report)?.map(|(x, y)| LevelAt { x, rows: vec![(0.0, y)] }).collect()),
+        _ => Ambient::Line(lines(record, key, report)?),
     };
+    // Ground may have suction above a table that is below it.
     let (base, axis) = (grid.lower()[grid.dims() - 1], ["x", "y", "z"][grid.dims() - 1]);
-    if rows.iter().all(|row| row.1 <= base) {
+    let heights = || table.levels().into_iter().flatten();
+    if !record.gives("suction") && heights().all(|row| row.1 <= base) {
         let message =
             format!("the water table is nowhere above the grid's lower face, {axis} = {base}: leave [water] out");
         record.error(key, message, report);
         return None;
     }
-    if key != "line" {
-        if let Some((t, _)) = rows.iter().find(|(t, _)| end.is_some_and(|end| *t > end)) {
-            report.warn(format!("{}: the row at t = {t} is beyond the end of the run", record.path_of(key)));
-        }
-        return Some(Ambient::Level(rows));
+    if let Some((t, _)) = heights().find(|(t, _)| end.is_some_and(|end| *t > end)) {
+        report.warn(format!("{}: the row at t = {t} is beyond the end of the run", record.path_of(key)));
     }
-    let slope = |pair: &[(f64, f64)]| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
-    let steepest = rows.windows(2).map(|pair| slope(pair).abs()).fold(0.0, f64::max);
+    steep(&table, (record, key), report);
+    Some(table)
+}
+
+/// Lines of the same places at times.
+fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<LevelAt>> {
+    let rows = record.rows(key)?;
+    let mut places: Vec<LevelAt> = Vec::new();
+    let count = rows.iter().take_while(|row| row.numbers[0] == rows[0].numbers[0]).count();
+    for (number, row) in rows.iter().enumerate() {
+        let [t, x, y] = [0, 1, 2].map(|k| row.numbers[k]);
+        let at = number % count;
+        let wrong = if number < count {
+            (at > 0 && places[at - 1].x >= x).then(|| format!("x = {x} is not above that of the row before"))
+        } else if places[at].x != x || (at > 0 && rows[number - 1].numbers[0] != t) {
+            Some(format!("t = {t}, x = {x}: the places of a time are those of the first, in their order"))
+        } else if at == 0 && rows[number - 1].numbers[0] >= t {
+            Some(format!("t = {t} is not above {}, that of the line before", rows[number - 1].numbers[0]))
+        } else {
+            None
+        };
+        if let Some(message) = wrong {
+            report.error(row.origin, &record.path_of(key), message);
+            return None;
+        }
+        if number < count {
+            places.push(LevelAt { x, rows: Vec::new() });
+        }
+        places[at].rows.push((t, y));
+    }
+    if places.is_empty() || places.iter().any(|place| place.rows.len() != places[0].rows.len()) {
+        record.error(key, "it needs at least one line, and every line all places", report);
+        return None;
+    }
+    Some(places)
+}
+
+/// A line so steep that the depth below it is not the pressure, where water flows along it.
+fn steep(table: &Ambient, (record, key): (&Record, &str), report: &mut Report<'_>) {
+    let Ambient::Line(places) = table else { return };
+    let slope = |pair: &[LevelAt]| {
+        let heights = pair[0].rows.iter().zip(&pair[1].rows);
+        heights.map(|(from, to)| (to.1 - from.1).abs()).fold(0.0, f64::max) / (pair[1].x - pair[0].x)
+    };
+    let steepest = places.windows(2).map(slope).fold(0.0, f64::max);
     if steepest > GENTLE {
         report.warn(format!(
             "{}: a slope of {steepest:.3}: the pressure is that of the depth straight below the line; where water flows along \
@@ -92,7 +137,6 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
             100.0 * steepest * steepest / (1.0 + steepest * steepest)
         ));
     }
-    Some(Ambient::Line(rows))
 }
 
 /// What only the whole case shows.
@@ -114,11 +158,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     if !case.rigid.is_empty() {
         report.warn("water: it does not press on rigid bodies: their weights and forces are those besides the water's");
     }
-    let highest = |rows: &[(f64, f64)]| rows.iter().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
-    let highest = match &water.table {
-        Ambient::None => return,
-        Ambient::Level(rows) | Ambient::Line(rows) => highest(rows),
-    };
+    let levels = water.table.levels();
+    let highest = levels.into_iter().flatten().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
     let up = case.grid.dims() - 1;
     let low = case.bodies.iter().map(|body| body.region.corners()[0][up]).fold(f64::INFINITY, f64::min);
     if highest <= low {
@@ -128,11 +169,10 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         let reason = "the water presses on wet surfaces by itself; loads are what acts besides";
         report.note("water", "loads besides", reason);
     }
-    let moves = matches!(&water.table, Ambient::Level(rows) if rows.len() > 1);
     let wets = |body: &usize| case.materials[case.bodies[*body].material].saturated.is_some();
-    if moves && case.stages.iter().any(|stage| stage.add.iter().any(wets)) {
+    if water.table.moves() && case.stages.iter().any(|stage| stage.add.iter().any(wets)) {
         report.warn(
-            "water.level_path: bodies that a stage places weigh saturated_unit_weight below the level at time 0, wherever it \
+            "water: bodies that a stage places weigh saturated_unit_weight below the level at time 0, wherever it \
              is when they come",
         );
     }

@@ -8,11 +8,15 @@ const GRAVITY: &str = "[gravity]\nacceleration = [0.0, -9.81]\n";
 
 /// The level, the line, weights, and what water needs.
 pub const WATER: &[Row] = &[
-    row(LEVEL, "", "water", "missing: one of level, level_path, line").up(1),
-    row(LEVEL, "level = 0.75\nline = [[0, 1]]", "water.line", "only one of level, level_path, line").down(1),
+    row(LEVEL, "", "water", "missing: one of level, level_path, line, line_path").up(1),
+    row(LEVEL, "level = 0.75\nline = [[0, 1]]", "water.line", "only one of level, level_path, line, line_path").down(1),
     row(LEVEL, "level = \"10 kPa\"", "water.level", "expected a length"),
     row(LEVEL, "level = 0.0", "water.level", "nowhere above the grid's lower face"),
     row(LEVEL, "level_path = [[0.5, 1.0], [0.5, 2.0]]", "water.level_path", "t = 0.5 is not above 0.5"),
+    row(LEVEL, "line_path = [[0, 0, 1], [0, 0, 2]]", "water.line_path", "x = 0 is not above that of the row before"),
+    row(LEVEL, "line_path = [[0, 0, 1], [1, 1, 2]]", "water.line_path", "the places of a time are those of the first"),
+    row(LEVEL, "line_path = [[1, 0, 1], [1, 2, 1], [0.5, 0, 1]]", "water.line_path", "t = 0.5 is not above 1"),
+    row(LEVEL, "line_path = [[0, 0, 1], [0, 2, 1], [1, 0, 1]]", "water.line_path", "every line all places"),
     row(LEVEL, "level_path = []", "water.level_path", "at least one row"),
     row(LEVEL, "line = [[1.0, 1.0], [0.5, 2.0]]", "water.line", "x = 0.5 is not above 1"),
     row(LEVEL, "line = [[0.0, -1.0], [0.5, -2.0]]", "water.line", "nowhere above the grid's lower face"),

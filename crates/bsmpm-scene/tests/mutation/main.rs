@@ -163,7 +163,12 @@ fn bases() -> Vec<String> {
         let dry = STATIC.replacen("poisson = 0.3", soil, 1).replacen("every = 0.5", fields, 1);
         format!("{dry}\n[water]\n{table}\nunit_weight = \"10 kN/m3\"\n\n{rest}\n")
     };
-    let still = ["level = 0.75", "level_path = [[0.0, \"2 m\"], [1.0, 0.5]]", "line = [[0.0, 0.75], [\"2 m\", 0.5]]"];
+    let still = [
+        "level = 0.75",
+        "level_path = [[0.0, \"2 m\"], [1.0, 0.5]]",
+        "line = [[0.0, 0.75], [\"2 m\", 0.5]]",
+        "line_path = [[0, 0, 0.75], [0, \"2 m\", 0.5], [1, 0, 1], [1, 2, 0.5]]",
+    ];
     let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, RUBBING.to_owned(), SEEPING.to_owned()];
     bases.extend(still.map(wet));
     let ratio = STATIC.replacen("poisson = 0.3", "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3", 1);

@@ -392,3 +392,15 @@ fn strength_falls_as_the_ground_can_drain() {
     assert_eq!(at_rest(&tight), Some(Motion::Undrained));
     assert_eq!(at_rest(&[&tight[..], &["strength_reduction.drainage=drained"]].concat()), Some(Motion::Held));
 }
+
+/// Water that a head lets stand above the surface does not press on it.
+#[test]
+fn heads_above_the_surface_are_warned_of() {
+    let warned = |set: &[&str]| {
+        let warnings = valid(SEEPING, set).warnings;
+        warnings.into_iter().filter(|warning| warning.contains("does not press on the ground")).collect::<Vec<_>>()
+    };
+    let found = warned(&[]);
+    assert!(found.len() == 1 && found[0].starts_with("drain.1: the head rises 1.000 m above"), "{found:?}");
+    assert!(warned(&["drain.1.head_path=[[0, 1.0], [\"30 d\", 2.0]]"]).is_empty());
+}

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
-use bsmpm::water::ambient::Ambient;
 use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::Word;
 use bsmpm_scene::{Case, Counted, MotionPath, Quantity, Traction};
@@ -308,8 +307,8 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
         (
-            until.is_none() && level_moves(case),
-            "water.level_path: the factor would be that of whatever the level is as strength falls: give the level that is \
+            until.is_none() && case.water.as_ref().is_some_and(|water| water.table.moves()),
+            "the water table moves: the factor would be that of whatever the level is as strength falls: give the level that is \
              meant, or --stage NAME: it stays as it is at the end of that stage",
         ),
         (
@@ -340,12 +339,6 @@ fn until(case: &Case, name: &str) -> Result<f64, Error> {
 fn amplitudes(case: &Case) -> impl Iterator<Item = &[(f64, f64)]> {
     let tractions = case.tractions.iter().map(|load| &load.amplitude[..]);
     tractions.chain(case.point_loads.iter().map(|load| &load.amplitude[..]))
-}
-
-/// Whether the water rises or falls while strength is reduced.
-fn level_moves(case: &Case) -> bool {
-    let Some(Ambient::Level(rows)) = case.water.as_ref().map(|water| &water.table) else { return false };
-    rows.windows(2).any(|pair| pair[0].1 != pair[1].1)
 }
 
 fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {

@@ -43,6 +43,16 @@ pub enum FieldName {
     Density,
     /// Number of the body, of frames with `body`
     Body,
+    /// Pore pressure, kPa, of frames with `pore-pressure`
+    PorePressure,
+    /// Pore pressure beyond that of still water, kPa, of frames with `excess-pressure`
+    ExcessPressure,
+    /// Share of the pores that water fills, of frames with `saturation`
+    Saturation,
+    /// Share of pores in the volume, of frames with `porosity`
+    Porosity,
+    /// Length of the flux of water, m/s, of frames with `flux`
+    Flux,
 }
 
 /// How a quantity is taken from a frame.
@@ -101,6 +111,11 @@ impl FieldName {
             Self::Yielding => scalar("yielding", 1.0, "Yielding", "-"),
             Self::Density => scalar("density", 1.0, "Density", "kg/m3"),
             Self::Body => scalar("body", 1.0, "Body", "-"),
+            Self::PorePressure => scalar("pore_pressure", 1e-3, "Pore pressure", "kPa"),
+            Self::ExcessPressure => scalar("excess_pressure", 1e-3, "Excess pore pressure", "kPa"),
+            Self::Saturation => scalar("saturation", 1.0, "Saturation", "-"),
+            Self::Porosity => scalar("porosity", 1.0, "Porosity", "-"),
+            Self::Flux => vector("flux", "Flux of water", "m/s"),
         }
     }
 
@@ -157,7 +172,7 @@ impl FieldName {
 
     /// Whether it is never negative, and 0 is where nothing is.
     fn begins_at_zero(self) -> bool {
-        matches!(self, Self::PlasticStrain | Self::Displacement | Self::Velocity | Self::Q)
+        matches!(self, Self::PlasticStrain | Self::Displacement | Self::Velocity | Self::Q | Self::Flux)
             || matches!(self, Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding)
     }
 }

@@ -12,8 +12,17 @@ pub enum Ambient {
     None,
     /// m  rows of time (s or pseudo-time, increasing) and height above the grid's lower corner; constant after the last
     Level(Vec<(f64, f64)>),
-    /// m  phreatic line: rows of x, increasing, and height, both from the grid's lower corner; constant beyond its ends
-    Line(Vec<(f64, f64)>),
+    /// phreatic line: places whose x increases; linear between them, level beyond
+    Line(Vec<LevelAt>),
+}
+
+/// The level of water at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LevelAt {
+    /// m  along axis 0, from the grid's lower corner
+    pub x: f64,
+    /// m  rows as of a level
+    pub rows: Vec<(f64, f64)>,
 }
 
 impl Ambient {
@@ -21,21 +30,49 @@ impl Ambient {
     pub fn table(&self, x: f64, t: f64) -> Option<(f64, f64)> {
         match self {
             Self::None => None,
-            Self::Level(rows) => {
-                let (first, last) = rows.first().zip(rows.last())?;
-                Some((between(rows, first.1, t).unwrap_or(last.1), 0.0))
-            }
-            Self::Line(rows) => {
-                let next = rows.partition_point(|row| row.0 <= x);
-                let Some(before) = next.checked_sub(1).map(|before| rows[before]) else {
-                    return rows.first().map(|first| (first.1, 0.0));
+            Self::Level(rows) => Some((level(rows, t)?, 0.0)),
+            Self::Line(places) => {
+                let next = places.partition_point(|place| place.x <= x);
+                let height = |place: &LevelAt| level(&place.rows, t);
+                let Some(before) = next.checked_sub(1).map(|before| &places[before]) else {
+                    return Some((height(places.first()?)?, 0.0));
                 };
-                let Some(after) = rows.get(next) else { return Some((before.1, 0.0)) };
-                let slope = (after.1 - before.1) / (after.0 - before.0);
-                Some((before.1 + slope * (x - before.0), slope))
+                let low = height(before)?;
+                let Some(after) = places.get(next) else { return Some((low, 0.0)) };
+                let slope = (height(after)? - low) / (after.x - before.x);
+                Some((low + slope * (x - before.x), slope))
             }
         }
     }
+
+    /// Levels in time: that everywhere, or those of the places of a line.
+    pub fn levels(&self) -> Vec<&Vec<(f64, f64)>> {
+        match self {
+            Self::None => Vec::new(),
+            Self::Level(rows) => vec![rows],
+            Self::Line(places) => places.iter().map(|place| &place.rows).collect(),
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn levels_mut(&mut self) -> Vec<&mut Vec<(f64, f64)>> {
+        match self {
+            Self::None => Vec::new(),
+            Self::Level(rows) => vec![rows],
+            Self::Line(places) => places.iter_mut().map(|place| &mut place.rows).collect(),
+        }
+    }
+
+    /// Whether it rises or falls.
+    pub fn moves(&self) -> bool {
+        self.levels().iter().any(|rows| rows.windows(2).any(|pair| pair[0].1 != pair[1].1))
+    }
+}
+
+/// The height of rows of time and height, at time `t`.
+fn level(rows: &[(f64, f64)], t: f64) -> Option<f64> {
+    let (first, last) = rows.first().zip(rows.last())?;
+    Some(between(rows, first.1, t).unwrap_or(last.1))
 }
 
 /// Still water at a time.
@@ -83,12 +120,29 @@ mod tests {
     use super::*;
     use crate::points::Seed;
 
+    /// A line of places and heights that stays.
+    fn line(places: &[(f64, f64)]) -> Ambient {
+        Ambient::Line(places.iter().map(|&(x, height)| LevelAt { x, rows: vec![(0.0, height)] }).collect())
+    }
+
+    #[test]
+    fn a_line_moves_from_one_to_another() {
+        let moving = Ambient::Line(vec![
+            LevelAt { x: 0.0, rows: vec![(0.0, 1.0), (4.0, 3.0)] },
+            LevelAt { x: 2.0, rows: vec![(2.0, 5.0), (4.0, 1.0)] },
+        ]);
+        let at = |x: f64, t: f64| moving.table(x, t).unwrap();
+        assert_eq!([at(0.0, 2.0), at(1.0, 2.0), at(3.0, 2.0)], [(2.0, 1.5), (3.5, 1.5), (5.0, 0.0)]);
+        assert_eq!([at(1.0, 0.0), at(1.0, 3.0), at(1.0, 9.0)], [(3.0, 2.0), (2.75, 0.25), (2.0, -1.0)]);
+        assert!(moving.moves() && !line(&[(0.0, 1.0), (2.0, 3.0)]).moves());
+    }
+
     /// An infinite slope of 20 degrees whose water table is its surface: what a point weighs and what the water does to
     /// it, along the slope and normal to it, give tan phi/tan beta (1 - gamma_w/(gamma cos^2 beta)).
     #[test]
     fn seepage_along_a_slope_lowers_its_factor_of_safety() {
         let (beta, phi) = (20.0_f64.to_radians(), 35.0_f64.to_radians());
-        let line = Ambient::Line(vec![(0.0, 0.0), (100.0, 100.0 * beta.tan())]);
+        let line = line(&[(0.0, 0.0), (100.0, 100.0 * beta.tan())]);
         let (x, v) = (Vector::<2>::new(50.0, 10.0), Vector::<2>::zeros());
         let seed = Seed { id: 0, material: 0, x, volume: 0.25, mass: 0.25 * 20.0 / 9.81, v };
         let points = Points::<2>::from_seeds([seed], false);
@@ -102,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_table_is_linear_between_its_rows_and_level_beyond_them() {
-        let line = Ambient::Line(vec![(1.0, 2.0), (3.0, 6.0), (4.0, 5.0)]);
+        let line = line(&[(1.0, 2.0), (3.0, 6.0), (4.0, 5.0)]);
         let at = |x: f64| line.table(x, 7.0);
         assert_eq!([at(0.0), at(1.0), at(2.0)], [Some((2.0, 0.0)), Some((2.0, 2.0)), Some((4.0, 2.0))]);
         assert_eq!([at(3.5), at(4.0), at(9.0)], [Some((5.5, -1.0)), Some((5.0, 0.0)), Some((5.0, 0.0))]);
@@ -114,7 +168,7 @@ mod tests {
 
     #[test]
     fn pressure_is_that_of_the_depth_straight_below_the_table() {
-        let line = Ambient::Line(vec![(0.0, 2.0), (2.0, 4.0)]);
+        let line = line(&[(0.0, 2.0), (2.0, 4.0)]);
         let water = StillWater::new(&line, 10.0, 0.0);
         let at = |x: f64, y: f64| water.pressure(&Vector::<2>::new(x, y));
         assert_eq!([at(1.0, 1.0), at(1.0, 3.0), at(1.0, 3.5), at(5.0, 0.0)], [20.0, 0.0, 0.0, 40.0]);

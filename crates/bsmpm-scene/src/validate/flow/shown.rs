@@ -1,7 +1,7 @@
 //! What is not shown to be right together with water that flows, and what is doubtful with it.
 
 use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Initial, Site, Support};
-use crate::grid::{GridAxis, GridSpec};
+use crate::grid::GridAxis;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
@@ -10,8 +10,7 @@ use crate::words::{AnalysisType, Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{Given, Motion, Soil};
+use bsmpm::water::flow::{Course, Given, Motion, Soil};
 
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
 const POINTS_OF_CUBIC: usize = 4;
@@ -57,6 +56,7 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     timed(case, root, report);
     drained(case, flow, report);
     ponds(case, flow, report);
+    weightless(case, flow, report);
     pressed(case, flow, report);
 }
 
@@ -242,10 +242,7 @@ fn drained(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 /// Drains above the water table, which let water in without end where the ground would take it.
 fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let Some(water) = &case.water else { return };
-    let times = match &water.table {
-        Ambient::Level(rows) => rows.iter().map(|row| row.0).collect(),
-        _ => vec![0.0],
-    };
+    let times: Vec<f64> = water.table.levels().into_iter().flatten().map(|row| row.0).collect();
     let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     // Without a table all of the ground is above it: what is let in sinks, if it has weight.
     let none = if case.gravity.is_some() { f64::NEG_INFINITY } else { f64::INFINITY };
@@ -261,7 +258,7 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let (time, told) = if flow.retains() { (end, "the run") } else { (dt, "a step") };
     let way = most * time / cell;
     for (number, drain) in flow.drains.iter().enumerate().filter(|(_, drain)| drain.given == Given::StillWater) {
-        if way > FILM && places(drain, &case.grid).iter().any(dry) {
+        if way > FILM && places(drain, case).iter().any(dry) {
             report.warn(format!(
                 "drain.{number}: above the water table it holds the pressure of the air, and the ground there is fed as by \
                  a pond, by up to {way:.1} cells of water in {told}: give seepage = true (and soils a retention), or \
@@ -271,17 +268,38 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     }
 }
 
+/// Heads above a body's surface, where water would stand on it and press.
+fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
+    for (number, drain) in flow.drains.iter().enumerate() {
+        let (Given::Head(Course(rows)), false) = (&drain.given, matches!(drain.site, DrainSite::Face(_))) else {
+            continue;
+        };
+        let highest = rows.iter().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
+        let lowest = places(drain, case).iter().map(|at| at[case.grid.dims() - 1]).fold(f64::INFINITY, f64::min);
+        if highest > lowest + 0.5 * cell {
+            report.warn(format!(
+                "drain.{number}: the head rises {:.3} m above the surface, and the water above it does not press on the \
+                 ground: where it stands there give [water] a level (level_path, line, line_path) up to it, and leave \
+                 head out; head is that of a pipe or well",
+                highest - lowest
+            ));
+        }
+    }
+}
+
 /// m  where a drain is, in the case's coordinates
-fn places(drain: &Drain, grid: &GridSpec) -> Vec<[f64; 3]> {
+fn places(drain: &Drain, case: &Case) -> Vec<[f64; 3]> {
     match &drain.site {
         DrainSite::Lines(lines) => lines.iter().flatten().map(|[x, y]| [*x, *y, 0.0]).collect(),
         DrainSite::Circle { center, radius } => place::ring(*center, *radius).map(|[x, y]| [x, y, 0.0]).collect(),
-        DrainSite::Plate(plate) => site::places(Site::Plate(*plate), grid),
+        DrainSite::Plate(plate) => site::places(Site::Plate(*plate), &case.grid),
         DrainSite::Face(Face { axis, upper }) => {
-            let mut ends = [grid.lower(), grid.upper()];
-            let at = ends[usize::from(*upper)][*axis];
-            ends.iter_mut().for_each(|end| end[*axis] = at);
-            ends.to_vec()
+            let (axis, side) = (*axis, usize::from(*upper));
+            let at = [case.grid.lower(), case.grid.upper()][side][axis];
+            let slack = case.grid.axes[axis].shortest();
+            let corners = case.bodies.iter().map(|body| body.region.corners());
+            corners.filter(|corners| (corners[side][axis] - at).abs() < slack).flatten().collect()
         }
     }
 }
