@@ -196,11 +196,13 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     }
 
     /// Begins a stage: takes the points away whose ids `gone` says, and places those that `placed` has for columns of
-    /// the grid. Returns how many of all ranks went and came. Collective.
+    /// the grid; loads that are `idle` so far may be on what comes. Returns how many of all ranks went and came.
+    /// Collective.
     pub fn begin_stage<P: Iterator<Item = Seed<D>>>(
         &mut self,
         gone: impl Fn(u64) -> bool,
         placed: impl FnOnce(Range<usize>) -> P,
+        idle: &[bool],
     ) -> [u64; 2] {
         let before = self.points.len();
         self.points.remove(&gone);
@@ -216,11 +218,27 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         if numbers[2] > 0.0 {
             self.make_room();
         }
+        if numbers[1] > 0.0 {
+            self.settle_loads(idle);
+        }
         self.points.sort_by_cell(&self.model.grid);
         if numbers[..2] != [0.0; 2] {
             self.stepper.begin_stage();
         }
         [numbers[0] as u64, numbers[1] as u64]
+    }
+
+    /// Anchors loads that did not act to what is there now, and puts them there.
+    fn settle_loads(&mut self, idle: &[bool]) {
+        let (boundary, anchored) = (&self.model.boundary, self.points.anchored());
+        let anchors = self.points.surface.anchors.renewed(boundary, idle, anchored, &*self.halo);
+        let places = anchors.places(boundary, anchored, &*self.halo);
+        let surface = &mut self.points.surface;
+        surface.anchors = anchors;
+        for load in (0..idle.len()).filter(|&load| idle[load]) {
+            surface.position[load].clone_from(&places.loads[load]);
+            surface.pressure[load].clone_from(&places.pressure[load]);
+        }
     }
 
     /// Goes over to the laws, supports and loads of a further model, which has the same grid. Fails on all ranks if a

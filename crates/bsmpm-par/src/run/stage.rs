@@ -27,12 +27,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let before = stored(&self.simulation);
         let next = model::model_at(&self.case, stage.at);
         let next = next.unwrap_or_else(|error| launch::end(&self.universe.world(), exit::BUG, &error));
-        let taken = self.case.taken_by(stage);
+        let (taken, idle) = (self.case.taken_by(stage), self.case.idle_before(stage.at));
         if stage.exchanges() {
             self.simulation.exchange(next)?;
         }
         let [removed, added] =
-            self.simulation.begin_stage(taken, |columns| model::placed::<K, D>(&self.case, stage, columns));
+            self.simulation.begin_stage(taken, |columns| model::placed::<K, D>(&self.case, stage, columns), &idle);
         if stage.resets_displacements {
             self.simulation.points.reset_displacements();
         }

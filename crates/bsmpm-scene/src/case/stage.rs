@@ -99,6 +99,21 @@ impl Case {
         })
     }
 
+    /// Which loads do not act before a stage that begins at the time `t`: tractions, then point loads.
+    pub fn idle_before(&self, t: f64) -> Vec<bool> {
+        let before = self.just_before(t);
+        let loads = 0..self.tractions.len() + self.point_loads.len();
+        loads.map(|load| self.acts_since(Acting::Load(load), before).is_none()).collect()
+    }
+
+    /// Whether bodies that are there as long as a strip or load acts satisfy `holds`.
+    pub(crate) fn is_held(&self, what: Acting, holds: impl Fn(&Body) -> bool) -> bool {
+        let times = std::iter::once(0.0).chain(self.stages.iter().map(|stage| stage.at));
+        let acting: Vec<f64> = times.filter(|t| self.acts_since(what, *t).is_some()).collect();
+        let stays = |body: &usize| acting.iter().all(|t| self.is_there(*body, *t));
+        (0..self.bodies.len()).filter(stays).any(|body| holds(&self.bodies[body]))
+    }
+
     /// What the strength of the start is divided by once the stages until the time `t` have begun.
     pub(crate) fn divided_at(&self, t: f64) -> f64 {
         let mut begun = self.stages.iter().rev().filter(|stage| self.has_begun(stage, t));

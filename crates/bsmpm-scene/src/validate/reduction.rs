@@ -95,7 +95,7 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
 fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report<'_>) {
     let made: Vec<bool> = (0..case.materials.len()).map(|number| case.is_followed(number)).collect();
     let Some(flow) = &mut case.flow else {
-        if table.gives("drainage") {
+        if table.word("drainage") == Some(Failure::Undrained) {
             let message = "no water flows that could stay: give a material drainage = \"coupled\" or \"undrained\"";
             table.error("drainage", message, report);
         }

@@ -218,8 +218,8 @@ fn once(body: usize, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
     }
 }
 
-/// What only the whole case shows: something is always left, it can be there without stress, and strips and loads have
-/// a body under them from the start to the end.
+/// What only the whole case shows: something is always left, it can be there without stress, strips have a body under
+/// them from the start to the end, and loads as long as they act.
 pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     if case.stages.is_empty() {
         return;
@@ -267,13 +267,18 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     };
     let lasting = of(&|body| case.lasts(body));
     follow(case, &lasting);
-    for (record, key, places) in surfaces(case, root) {
+    for (what, record, key, places) in surfaces(case, root) {
         let at = |bodies: &[Body], place: &[f64; 3]| place::is_at(bodies, &case.grid, *place);
-        if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !at(&lasting, place)) {
-            let message = format!(
-                "at {:?} there is no body from the start to the end: stages add or remove what it is on",
-                &at[..case.grid.dims()]
-            );
+        let (held, told): (&dyn Fn(&[f64; 3]) -> bool, _) = match what {
+            Acting::Strip(_) => (&|place| at(&lasting, place), "from the start to the end"),
+            Acting::Load(_) => (
+                &|place| case.is_held(what, |body| at(std::slice::from_ref(body), place)),
+                "as long as it acts (apply, release)",
+            ),
+        };
+        if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !held(place)) {
+            let message =
+                format!("at {:?} there is no body {told}: stages add or remove what it is on", &at[..case.grid.dims()]);
             record.error(key, message, report);
         }
     }
@@ -331,25 +336,27 @@ fn follow(case: &mut Case, lasting: &[Body]) {
 }
 
 /// Records of strips and loads, the key of their place, and places along them.
-fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(&'a Record, &'static str, Vec<[f64; 3]>)> {
+fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Record, &'static str, Vec<[f64; 3]>)> {
     let mut found = Vec::new();
     let held = case.footing.iter().map(|footing| footing.site);
     let held = held.chain(case.prescribed.iter().map(|prescribed| prescribed.site));
     let strips = root.records("footing").iter().chain(root.records("prescribed"));
-    for (site, record) in held.zip(strips).filter(|(site, _)| !matches!(site, Site::Face(_))) {
-        found.push((record, key(record), site::places(site, &case.grid)));
+    for (number, (site, record)) in held.zip(strips).enumerate() {
+        if !matches!(site, Site::Face(_)) {
+            found.push((Acting::Strip(number), record, key(record), site::places(site, &case.grid)));
+        }
     }
-    for (traction, record) in case.tractions.iter().zip(root.records("traction")) {
+    for (number, (traction, record)) in case.tractions.iter().zip(root.records("traction")).enumerate() {
         let places = match traction.line {
             LoadedLine::Segment { from, to } => site::places(Site::Segment { from, to }, &case.grid),
             LoadedLine::Circle { center, radius } => place::ring(center, radius).map(|[x, y]| [x, y, 0.0]).collect(),
             LoadedLine::Plate(plate) => site::places(Site::Plate(plate), &case.grid),
         };
-        found.push((record, key(record), places));
+        found.push((Acting::Load(number), record, key(record), places));
     }
-    found.extend(
-        case.point_loads.iter().zip(root.records("point_load")).map(|(of, record)| (record, "at", vec![of.at])),
-    );
+    for (number, (of, record)) in case.point_loads.iter().zip(root.records("point_load")).enumerate() {
+        found.push((Acting::Load(case.tractions.len() + number), record, "at", vec![of.at]));
+    }
     found
 }
 

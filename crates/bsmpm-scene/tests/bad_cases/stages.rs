@@ -70,7 +70,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }\n[[stage]]\nat = 0.5\nremove = [\"top\"]\n\
          [[point_load]]\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0",
         "point_load.0.at",
-        "there is no body from the start to the end",
+        "there is no body as long as it acts",
     )
     .down(10),
     row(

@@ -62,6 +62,36 @@ fn an_embankment_in_lifts_settles_as_layers_that_are_placed_one_after_the_other(
     assert!(closure.abs() < 1e-6 * external, "{closure:e} of {external:e}");
 }
 
+/// Traffic drives on the lifts once they are there, and no more as the last one is taken away: the top goes down by q H/M
+/// under it, and what is left comes back. On two ranks, and over a restart with the load not yet there, the same.
+#[test]
+fn a_load_acts_on_what_a_stage_has_placed() {
+    const LOAD: f64 = 1e6;
+    let stages = "[[stage]]\nat = 1\nadd = [\"lift-1\", \"lift-2\", \"lift-3\"]\n\
+                  [[stage]]\nat = 2\napply = [\"traffic\"]\n\
+                  [[stage]]\nat = 3\nrelease = [\"traffic\"]\nremove = [\"lift-3\"]\n\
+                  [[traction]]\nname = \"traffic\"\nfrom = [0, 8]\nto = [2, 8]\nstress = [0, \"-1 MPa\"]\n";
+    let scratch = Scratch::with_case(&column(stages, 0.5));
+    let out = |name: &str| scratch.path(name);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
+    scratch.mpirun(2, &["case.toml", "-q", "-o", "two"]).expect(0);
+    let [one, two] = ["one", "two"].map(|name| history(&out(name)));
+    let moved = |column: &str, t: f64| at(&one, column, t) - at(&one, column, 2.0);
+    let expected = -LOAD * LIFT * LIFTS as f64 / MODULUS;
+    assert!((moved("top-3-y", 3.0) / expected - 1.0).abs() < 1e-3, "{:e} {expected:e}", moved("top-3-y", 3.0));
+    // Without the load and the last lift: the ground rises by what its weight had pressed it down.
+    let rise = WEIGHT * LIFT * LIFT / MODULUS;
+    assert!((moved("top-0-y", 4.0) / rise - 1.0).abs() < 1e-3, "{:e} {rise:e}", moved("top-0-y", 4.0));
+    for (t, column) in [(3.0, "top-3-y"), (4.0, "top-2-y")] {
+        assert!((at(&two, column, t) / at(&one, column, t) - 1.0).abs() < 1e-9, "{column}");
+    }
+    let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+    scratch.mpirun(1, &[&part[..], &["--max-steps", "1"]].concat()).expect(75);
+    scratch.mpirun(1, &part).expect(0);
+    let text = |name: &str| std::fs::read_to_string(out(name).join("history.csv")).unwrap();
+    assert!(text("one") == text("part"));
+}
+
 /// What lay above by the thickness d lets the ground at z rise by gamma d z/M, in one stage or two.
 #[test]
 fn ground_heaves_by_what_is_taken_away_in_one_stage_or_two() {

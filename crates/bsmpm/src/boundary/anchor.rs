@@ -99,6 +99,25 @@ impl Anchors {
         anchors
     }
 
+    /// The anchors with those of the loads that are `idle` replaced by the points nearest to their start of all that are
+    /// there. Two reductions if there are such.
+    pub fn renewed<const D: usize>(
+        &self,
+        boundary: &Boundary<D>,
+        idle: &[bool],
+        points: Anchored<'_, D>,
+        halo: &dyn Halo,
+    ) -> Self {
+        let (mut anchors, loads) = (self.clone(), boundary.loads.iter().zip(idle));
+        let places: Vec<Vector<D>> =
+            loads.filter(|(_, idle)| **idle).flat_map(|(load, _)| &load.points).map(|point| point.x).collect();
+        if !places.is_empty() {
+            let renewed = anchors.loads.iter_mut().zip(idle).filter(|(_, idle)| **idle).flat_map(|(ids, _)| ids);
+            renewed.zip(nearest(&places, points, halo)).for_each(|(id, found)| *id = found);
+        }
+        anchors
+    }
+
     /// Where the material is now. One reduction, if there are surface points at all.
     pub fn places<const D: usize>(
         &self,

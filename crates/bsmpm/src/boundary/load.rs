@@ -51,6 +51,11 @@ impl<const D: usize> Load<D> {
         }
     }
 
+    /// Whether nothing of it ever acts: there may be no material at it yet, or any more.
+    pub fn is_idle(&self) -> bool {
+        !self.amplitude.is_empty() && self.amplitude.iter().all(|row| row.1 == 0.0)
+    }
+
     /// Share of the load that acts at time `t`.
     fn grown(&self, t: f64) -> f64 {
         match self.amplitude.last() {
@@ -90,7 +95,8 @@ pub fn add_forces<const D: usize>(
         }
     }
     halo.reduce(&mut applied);
-    let lost = (0..loads.len()).find(|&number| applied[number] < loads[number].points.len() as f64);
+    let lacks = |number: &usize| applied[*number] < loads[*number].points.len() as f64;
+    let lost = (0..loads.len()).filter(|&number| !loads[number].is_idle()).find(lacks);
     if let Some(load) = lost {
         let points = loads[load].points.len() - applied[load] as usize;
         return Err(StepError::Unloaded { load, points });
