@@ -296,6 +296,15 @@ reference = 0.6666666667
 tolerance = 1e-9
 
 [[study.row]]
+quantity  = "how far from itself"
+run       = "half"
+column    = "penetration"
+operation = "deviation"
+against   = "half"
+where     = { from = 0.1, to = 0.2 }
+max       = 0.0
+
+[[study.row]]
 quantity  = "of a run that is not short"
 run       = "whole"
 column    = "penetration"
