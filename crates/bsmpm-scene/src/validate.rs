@@ -47,6 +47,8 @@ pub(crate) const STANDARD_GRAVITY: f64 = 9.81;
 const NEARLY_STANDARD: f64 = 1e-6;
 /// Poisson's ratio above which elastic material is taken to lock.
 pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
+/// Longest edge over the shortest one of cells that count as squares of one size.
+pub(crate) const SQUARE: f64 = 1.01;
 
 /// The case that `record` describes; `text` is what was read. `None` after an error.
 pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Option<Case> {

@@ -306,3 +306,32 @@ fn cells_are_moved_to_where_strips_end_and_materials_meet() {
     let by_hand = valid(FOOTING, &["accuracy=draft", aside, "footing.to=[9.3, 5.0]", "grid.cell=1.0"]);
     assert!(by_hand.warnings.iter().any(|told| told.contains("lies inside a cell")), "{:?}", by_hand.warnings);
 }
+
+/// Softening goes by the edge of equal squares: a preset neither grades its cells nor makes them oblong.
+#[test]
+fn cells_of_what_softens_in_bands_of_a_given_width_are_equal_squares() {
+    let soft = |name: &str| {
+        format!(
+            "material.{name}={{ model = \"mohr-coulomb-softening\", young = 1e7, poisson = 0.3, unit_weight = 2e4, \
+             friction = 0, cohesion = 1e4, residual_friction = 0, residual_cohesion = 5e3, softening_strain = 0.5, \
+             band_width = 0.1 }}"
+        )
+    };
+    let oblong = |case: &Case| case.grid.axes[0].longest().max(case.grid.axes[1].longest()) / case.grid.shortest();
+    // Whole along both axes: 10 m and 4.3 m in 23 and 10 cells would be .4348 by .43 m.
+    let flat = ["accuracy=draft", "body.0.box.upper=[10.0, 4.3]", "grid.upper=[10.0, 4.3]", "boundary.top=roller"];
+    assert!(oblong(&valid(COLUMN, &flat)) > 1.01);
+    let case = valid(COLUMN, &[&flat[..], &[&soft("rods")]].concat());
+    let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
+    assert!(oblong(&case) <= 1.01 && (0.2..0.44).contains(&x.longest()), "{x:?} {y:?}");
+    assert!((x.length() - 10.0).abs() < 1e-12 && (y.length() - 4.3).abs() < 1e-12, "{x:?} {y:?}");
+    // As small everywhere as a strip wants them, with lines at its end and on the ground.
+    let case = valid(FOOTING, &["accuracy=draft", &soft("clay")]);
+    let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
+    assert!(is_fine(x, [0.0, 10.0], 0.25) && is_fine(y, [0.0, 10.0], 0.25), "{x:?} {y:?}");
+    // A strip whose end is on no line of the cells that it wants: of smaller ones one has it.
+    let case = valid(FOOTING, &["accuracy=draft", &soft("clay"), "footing.to=[1.2, 10.0]"]);
+    let x = &case.grid.axes[0];
+    assert!(x.longest() < 0.3 && oblong(&case) < 1.0 + 1e-9, "{x:?}");
+    assert!((0..=x.cells()).any(|i| (x.breakpoint(i) - 1.2).abs() < 1e-9), "{x:?}");
+}

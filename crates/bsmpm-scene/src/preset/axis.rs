@@ -4,7 +4,7 @@
 pub(super) const ON_LINE: f64 = 1e-6;
 
 /// Breakpoints along an axis at most: more are the author's to ask for.
-const MOST: f64 = 1e5;
+pub(super) const MOST: f64 = 1e5;
 
 /// A range of an axis in which cells are small.
 #[derive(Clone, Copy, Debug)]

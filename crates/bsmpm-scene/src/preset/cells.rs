@@ -1,8 +1,9 @@
 //! Cells that a preset chooses: equal ones, or small ones around strips and loaded segments that grow away from them.
 
 use super::Preset;
-use super::axis::{Fine, ON_LINE, Spacing};
+use super::axis::{Fine, MOST, ON_LINE, Spacing};
 use super::scene::{PresetScene, Segment, around};
+use crate::validate::SQUARE;
 use crate::words::{Side, Support, Word};
 
 /// What cells follow from.
@@ -65,44 +66,75 @@ impl PresetScene<'_> {
         let side = (upper[0] - lower[0]).min(upper[1] - lower[1]);
         let (size, why) = (side / preset.across, format!("{} across the {side} m of the bodies", preset.across));
         let zones = self.zones(preset, size)?;
+        if self.materials().any(|material| material.gives("band_width")) {
+            let cell = |zone: &&Zone| zone.ranges[0].cell;
+            let smallest = zones.iter().min_by(|a, b| cell(a).total_cmp(&cell(b)));
+            let (size, why) = smallest.map_or((size, &why), |zone| (cell(&zone), &zone.why));
+            return self.squares(size, why);
+        }
         if zones.is_empty() { self.equal(size, why) } else { self.graded(preset, (size, &why), &zones) }
     }
 
     /// Equal cells of about `size` (m). Along an axis between two faces that stay they come out whole.
     fn equal(&self, size: f64, why: String) -> Option<Cells> {
-        let (ends, boundary) = (self.ends()?, self.root.record("boundary")?);
-        let moved: Vec<Side> =
-            self.root.records("prescribed").iter().filter_map(|motion| motion.word("face")).collect();
-        let edge = |axis: usize| {
-            let length = ends[axis][1] - ends[axis][0];
-            let gives_way = |side: Side| boundary.word(side.word()) == Some(Support::Free) && !moved.contains(&side);
-            if Side::ALL[axis].into_iter().any(gives_way) { size } else { length / (length / size).round().max(1.0) }
-        };
-        let [x, y] = [edge(0), edge(1)];
-        let sound = |edge: f64| edge > 0.0 && edge.is_finite();
-        if !sound(x) || !sound(y) {
+        let (ends, wanted) = (self.ends()?, self.wanted());
+        let edge = |axis: usize| Some(if self.stays(axis)? { whole(ends[axis], size) } else { size });
+        let edges = [edge(0)?, edge(1)?];
+        if !edges.iter().all(|edge| *edge > 0.0 && edge.is_finite()) {
             return None;
         }
-        let wanted = self.wanted();
-        let on_line = |axis: usize, edge: f64| {
-            let [lower, upper] = ends[axis];
-            let off = |at: &f64| ((at - lower) / edge - ((at - lower) / edge).round()).abs();
-            let inside = |at: &&f64| (lower..=upper).contains(*at);
-            wanted[axis].iter().filter(inside).all(|at| off(at) <= ON_LINE)
-        };
-        if on_line(0, x) && on_line(1, y) {
-            let value = if x == y { format!("{x:?}") } else { format!("[{x:?}, {y:?}]") };
-            let (keys, edge) = (["cell", "knots"], x.min(y));
-            return Some(Cells { keys, value, edge, why, sizes: Vec::new(), breakpoints: None });
+        if self.on_lines(edges)? {
+            return Some(of_edges(edges, why));
         }
         let along = |axis: usize| {
-            let spacing = Spacing { cell: [x, y][axis], growth: 1.0, fine: Vec::new() };
+            let spacing = Spacing { cell: edges[axis], growth: 1.0, fine: Vec::new() };
             spacing.breakpoints(ends[axis], &wanted[axis])
         };
         let why = format!("{why}, moved by up to half a cell to where materials meet and strips and loads end");
         let mut cells = of_breakpoints([along(0)?, along(1)?], why)?;
         cells.breakpoints = None; // about equal ones
         Some(cells)
+    }
+
+    /// Equal squares of about `size` (m) or smaller ones, which come out whole between faces that stay: the softening
+    /// of a material with a band_width goes by their edge. Of those down to half as long the first whose lines are
+    /// where strips, loads and materials end, or if none are the first.
+    fn squares(&self, size: f64, why: &str) -> Option<Cells> {
+        let (ends, stays) = (self.ends()?, [self.stays(0)?, self.stays(1)?]);
+        let along = usize::from(!stays[0] && stays[1]);
+        let length = ends[along][1] - ends[along][0];
+        let fewest = (length / size).round().max(1.0);
+        if !(1.0..=MOST).contains(&fewest) {
+            return None;
+        }
+        let divided = (0..=fewest as usize).map(|more| length / (fewest + more as f64));
+        let given = (!stays[along]).then_some(size);
+        let fitted = |edge: f64| [0, 1].map(|axis| if stays[axis] { whole(ends[axis], edge) } else { edge });
+        let is_square = |[x, y]: &[f64; 2]| x.max(*y) <= SQUARE * x.min(*y);
+        let all: Vec<[f64; 2]> = given.into_iter().chain(divided).map(fitted).filter(is_square).collect();
+        let edges = all.iter().find(|edges| self.on_lines(**edges) == Some(true)).or(all.first())?;
+        Some(of_edges(*edges, format!("{why}; equal squares for the band_width of a material")))
+    }
+
+    /// Whether both faces across an axis stay where they are.
+    fn stays(&self, axis: usize) -> Option<bool> {
+        let boundary = self.root.record("boundary")?;
+        let moved: Vec<Side> =
+            self.root.records("prescribed").iter().filter_map(|motion| motion.word("face")).collect();
+        let gives_way = |side: Side| boundary.word(side.word()) == Some(Support::Free) && !moved.contains(&side);
+        Some(!Side::ALL[axis].into_iter().any(gives_way))
+    }
+
+    /// Whether lines of equal cells with these edges (m) are at all places at which one is wanted.
+    fn on_lines(&self, edges: [f64; 2]) -> Option<bool> {
+        let (ends, wanted) = (self.ends()?, self.wanted());
+        let on_line = |axis: usize| {
+            let ([lower, upper], edge) = (ends[axis], edges[axis]);
+            let off = |at: &f64| ((at - lower) / edge - ((at - lower) / edge).round()).abs();
+            let inside = |at: &&f64| (lower..=upper).contains(*at);
+            wanted[axis].iter().filter(inside).all(|at| off(at) <= ON_LINE)
+        };
+        Some(on_line(0) && on_line(1))
     }
 
     /// Small cells in the zones and growing ones away from them, up to the size (m) that the bodies want, which has a
@@ -199,6 +231,17 @@ impl PresetScene<'_> {
         }
         wanted
     }
+}
+
+/// m  edge nearest to a size of cells that come out whole between two ends
+fn whole([lower, upper]: [f64; 2], size: f64) -> f64 {
+    (upper - lower) / ((upper - lower) / size).round().max(1.0)
+}
+
+/// Equal cells with these edges (m).
+fn of_edges([x, y]: [f64; 2], why: String) -> Cells {
+    let value = if x == y { format!("{x:?}") } else { format!("[{x:?}, {y:?}]") };
+    Cells { keys: ["cell", "knots"], value, edge: x.min(y), why, sizes: Vec::new(), breakpoints: None }
 }
 
 /// Cells with these breakpoints (m).

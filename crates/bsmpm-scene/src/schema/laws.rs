@@ -188,9 +188,9 @@ pub(crate) static MATERIAL: Table = Table {
             "band_width",
             Quantity(In::Length, Range::POSITIVE),
             Optional,
-            "of the shear band that softening_strain is of: cells of size h take softening_strain band_width / h, so \
-             that a band does the same work in any grid (crack band; cells of one size only); without it results depend \
-             on the cells",
+            "of the shear band that softening_strain is of: a band in cells of size h does its work across 2 h, so that \
+             these take softening_strain band_width / (2 h), and the work is that of the band in any grid (crack band; \
+             cells of one size only); without it results depend on the cells",
         ),
         key(
             "kappa",

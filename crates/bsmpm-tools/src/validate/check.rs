@@ -128,6 +128,9 @@ impl MatrixRow {
         if self.column.is_none() && says_where {
             return Err("at, where, operation and scale belong to a row with a column".into());
         }
+        if self.against.is_some() != (self.operation == Operation::Deviation) {
+            return Err("a deviation is against a run, and nothing else is".into());
+        }
         match (&self.place, self.at) {
             (place, at) if self.operation == Operation::Reach && (place.is_some() || at.is_some()) => {
                 Err("reach is the last row: neither at nor where".into())

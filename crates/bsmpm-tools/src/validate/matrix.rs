@@ -90,6 +90,8 @@ pub(super) struct MatrixRow {
     pub place: Option<MatrixPlace>,
     #[serde(default)]
     pub operation: Operation,
+    /// the run from which a deviation is
+    pub against: Option<String>,
     /// multiplies what is taken of the column
     pub scale: Option<f64>,
     pub order: Option<MeasuredOrder>,
@@ -122,6 +124,9 @@ pub(super) enum Operation {
     Spread,
     /// weighted by the column of the window: an integral over it, divided by its length
     Mean,
+    /// from another run: the largest difference over a window, of a whole curve, relative to the other's value at the
+    /// same value of the window's column
+    Deviation,
 }
 
 /// Where a column first reaches a value; or the part of the history from one value to another, whole where one is
@@ -257,7 +262,7 @@ impl MatrixRow {
     /// The runs that it takes its number from.
     pub fn runs(&self) -> Vec<&str> {
         let orders = self.order.iter().chain(&self.extrapolated).flat_map(|order| &order.runs);
-        self.run.iter().chain(orders).map(String::as_str).collect()
+        self.run.iter().chain(&self.against).chain(orders).map(String::as_str).collect()
     }
 
     /// Whether it can pass and fail.

@@ -28,6 +28,7 @@ pub(super) fn value(row: &MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>)
         }
         (Operation::Last, _) => at_time(outcomes, run, &values, row.at)?,
         (Operation::Reach, _) => values[values.len() - 1],
+        (Operation::Deviation, place) => deviation(row, &part(outcomes, run, &values, place.as_ref())?, outcomes)?,
         (operation, place) => over(operation, &part(outcomes, run, &values, place.as_ref())?),
     };
     Ok(Measured { value: row.scale.unwrap_or(1.0) * value, remark: None })
@@ -87,6 +88,22 @@ fn part(
     Ok(window(&column(outcomes, run, name)?, values, from, to))
 }
 
+/// The largest difference of a part of a history from that of the row's other run at the same place, relative to it.
+fn deviation(row: &MatrixRow, part: &[(f64, f64)], outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<f64, Lack> {
+    let (other, name) = (row.against.as_deref().unwrap_or_default(), row.column.as_deref().unwrap_or_default());
+    let (values, across) = (column(outcomes, other, name)?, row.place.as_ref().map_or("time", |place| &place.column));
+    let mut largest: f64 = 0.0;
+    for (at, value) in part {
+        let beside = spot(outcomes, other, across, *at)?.of(&values);
+        let apart = (value / beside - 1.0).abs();
+        if !apart.is_finite() {
+            return Ok(f64::NAN);
+        }
+        largest = largest.max(apart);
+    }
+    Ok(largest)
+}
+
 /// What an operation makes of a part of a history; no number of it may be missing.
 fn over(operation: Operation, part: &[(f64, f64)]) -> f64 {
     let values = || part.iter().map(|(_, value)| *value);
@@ -101,7 +118,7 @@ fn over(operation: Operation, part: &[(f64, f64)]) -> f64 {
             (largest - values().fold(f64::INFINITY, f64::min)) / mean(part).abs()
         }
         Operation::Mean => mean(part),
-        Operation::Last | Operation::Reach => part.last().map_or(f64::NAN, |(_, value)| *value),
+        Operation::Last | Operation::Reach | Operation::Deviation => part.last().map_or(f64::NAN, |(_, value)| *value),
     }
 }
 

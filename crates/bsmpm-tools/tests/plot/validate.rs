@@ -9,7 +9,8 @@ use std::time::Duration;
 use crate::quasi_static::FOOTING;
 use crate::still::Still;
 
-/// The solver: it notes what it was asked for and hands out the run, as far as t = .475 where it is to stop.
+/// The solver: it notes what it was asked for and hands out the run, as far as t = .475 where it is to stop, and with
+/// .8 times the penetration where it is to be stiffer.
 const STUB: &str = r#"#!/bin/sh
 echo "$@" >> calls.txt
 case "$*" in *explode*) echo 'it blew up'; exit 70;; esac
@@ -17,6 +18,10 @@ for last; do :; done
 mkdir -p "$last" && cp -r made/. "$last" && cd "$last"
 arguments=$(printf '"%s",' "$@")
 sed -i "0,/\"still.toml\"/s|\"still.toml\"|${arguments%,}|" run.json
+case "$*" in *stiffer=*)
+    awk -F, -v OFS=, '/^[a-z]/ { for (i = 1; i <= NF; i++) if ($i == "penetration") at = i } /^[0-9]/ { $at *= 0.8 } 1' \
+        history.csv > part && mv part history.csv;;
+esac
 case "$*" in *stop=*)
     code=${*#*stop=}
     code=${code%% *}
@@ -193,6 +198,8 @@ fn a_matrix_with_mistakes_is_refused_before_anything_runs() {
         ("at        = 0.4875", "at = 0.5\nwhere = { value = 0.5 }", "exclude each other"),
         ("at        = 0.4875", "where = { column = \"time\" }", "needs a value"),
         ("reference = 0.975", "reference = 0.0", "other than 0"),
+        ("at        = 0.4875", "operation = \"deviation\"", "a deviation is against a run"),
+        ("at        = 0.4875", "at = 0.5\nagainst = \"fine\"", "a deviation is against a run"),
         ("max      = 0.1", "max      = 0.1\nmin = 0.2", "min is above its max"),
         ("max      = 0.1", "", "known to fail, and cannot"),
         ("min = 1.9,", "min = 2.9,", "known needs a band"),
@@ -222,6 +229,10 @@ name     = "half"
 case     = "case.toml"
 set      = ["stop=80"]
 may_stop = true
+
+[[study.run]]
+name = "stiffer"
+set  = ["stiffer=1"]
 
 [[study.run]]
 name  = "whole"
@@ -296,6 +307,26 @@ reference = 0.6666666667
 tolerance = 1e-9
 
 [[study.row]]
+quantity  = "how far from a stiffer one"
+run       = "half"
+column    = "penetration"
+operation = "deviation"
+against   = "stiffer"
+where     = { from = 0.1, to = 0.2 }
+reference = 0.25
+tolerance = 1e-9
+
+[[study.row]]
+quantity  = "how far where that is not"
+run       = "half"
+column    = "time"
+operation = "deviation"
+against   = "stiffer"
+where     = { column = "penetration", from = 0.1, to = 0.2 }
+reference = 0.2
+tolerance = 1e-9
+
+[[study.row]]
 quantity  = "of a run that is not short"
 run       = "whole"
 column    = "penetration"
@@ -309,7 +340,7 @@ fn rows_are_taken_from_a_run_as_far_as_it_came() {
     prepare(dir.path(), STOPPED);
     let output = validate(dir.path(), &["--short"]);
     let text = printed(&output);
-    assert_eq!((output.status.code(), text.lines().last()), (Some(77), Some("3 passed, 4 failed")), "{text}");
+    assert_eq!((output.status.code(), text.lines().last()), (Some(77), Some("5 passed, 4 failed")), "{text}");
     let row = |quantity: &str| text.lines().find(|line| line.contains(quantity)).unwrap().to_owned();
     assert!(row("mean depth").contains(" 4.2 "), "{text}");
     assert!(row("deeper, told").contains(" none ") && row("deeper, told").contains(" not reached "), "{text}");
@@ -322,6 +353,8 @@ fn rows_are_taken_from_a_run_as_far_as_it_came() {
     assert!(row("largest to its end").contains("FAIL, not reached") && row("at its end").contains("FAIL, not reached"));
     assert!(row("no kink").contains("no kink before its end") && row("no kink").contains(" FAIL "), "{text}");
     assert!(row("where it stops").contains("FAIL, known") && row("how even it is").contains(" pass "), "{text}");
+    // At the same penetration the stiffer one is at 1.25 times the time, a fifth of it away from ours.
+    assert!(row("from a stiffer one").contains(" pass ") && row("where that is not").contains(" pass "), "{text}");
     let table = fs::read_to_string(dir.path().join("out/table.csv")).unwrap();
     assert!(table.contains("\"pass\",\"80\""), "{table}");
 }

@@ -5,6 +5,7 @@ use crate::grid::{GridAxis, GridSpec};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{Dimension, Kind, LawName, MATERIAL};
+use crate::validate::SQUARE;
 use crate::words::{Geometry, Word};
 use bsmpm::material::{CamClay, Decay, Elastic, Graded, Match, Material, Profile, Separation};
 
@@ -195,8 +196,12 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     Some(())
 }
 
-/// The plastic strain of cells for that of a shear band: a band that is one cell wide does the same work in any (crack
-/// band: Bažant and Oh, 1983). `None` after an error.
+/// Cells across which a band of shear does the work of its softening. Splines of order 2 make no narrower slip than a
+/// hat of strain over two cells, all of which softens sooner or later; measured: `cases/results/softening.md`.
+const CELLS_OF_BAND: f64 = 2.0;
+
+/// The plastic strain of cells for that of a shear band, so that a band does the same work in any (crack band: Bažant
+/// and Oh, 1983). `None` after an error.
 fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<()> {
     let falls = ["friction", "cohesion"].map(|key| (law.of(key), law.of(&format!("residual_{key}"))));
     let falls = falls.into_iter().any(|(first, last)| first.value > last.value);
@@ -208,7 +213,7 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
             return Some(());
         }
         report.warn(format!(
-            "{}: what softens localises in bands one cell wide, so that results depend on the cells; give band_width, \
+            "{}: what softens localises in bands as wide as two cells, so that results depend on the cells; give band_width, \
              or compare two cell sizes",
             record.path
         ));
@@ -219,22 +224,23 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
         axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min),
         axes.iter().map(GridAxis::longest).fold(0.0, f64::max),
     );
-    if longest > 1.01 * shortest {
+    if longest > SQUARE * shortest {
         let message = format!(
-            "needs square cells of one size, and these measure {shortest} to {longest} m; with `accuracy`, give grid.cell"
+            "needs square cells of one size, and these measure {shortest} to {longest} m: give grid.cell one number"
         );
         record.error("band_width", message, report);
         return None;
     }
-    // What happens in a band is smeared over a cell: its strain, and how fast it grows.
+    // What happens in a band is smeared over two cells: its strain, and how fast it grows.
+    let smeared = CELLS_OF_BAND * longest;
     for (key, number) in law.values.iter_mut().filter(|(key, _)| ["softening_strain", "reference_rate"].contains(key)) {
         let of_band = number.value;
-        number.value *= width / longest;
+        number.value *= width / smeared;
         if of_band > 0.0 {
             report.note(
                 record.path_of(key),
                 number.value.to_string(),
-                format!("{of_band} of a band {width} m wide, in cells of {longest} m"),
+                format!("{of_band} of a band {width} m wide, which in cells of {longest} m is {smeared} m wide"),
             );
         }
     }
