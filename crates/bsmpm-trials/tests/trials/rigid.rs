@@ -1,4 +1,5 @@
-//! Rigid bodies: the same on any number of ranks and over restarts, and what is told of them.
+//! Rigid bodies: the same on any number of ranks and over restarts, what is told of them, and the thrust of sand on a
+//! wall.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
@@ -120,4 +121,101 @@ fn what_is_doubtful_of_rigid_bodies_is_told_and_what_nothing_holds_ends_the_run(
     let free = changed(&free, "[[history]]\nquantity = \"rigid-velocity\"\nrigid = \"block\"\n", "");
     scratch.write("case.toml", free);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "loose"]).expect(80).says_once("nothing holds rigid body 0");
+}
+
+/// A rigid wall that retains sand at rest on a rough base, and goes away from it from the first step on.
+const WALL: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "quasi-static"
+end = 1.0
+steps = 20
+[grid]
+lower = [-1, 0]
+upper = [8, 4]
+cell = 0.25
+order = "quadratic"
+[material.sand]
+model = "mohr-coulomb"
+young = "20 MPa"
+poisson = 0.3
+friction = 30
+dilation = 0
+cohesion = 0
+unit_weight = "18 kN/m3"
+[[body]]
+material = "sand"
+box = { lower = [0, 0], upper = [8, 3] }
+points_per_cell = 3
+[[rigid]]
+name = "wall"
+polygon = [[-0.9, 0], [0, 0], [0, 3.3], [-0.9, 3.3]]
+friction = 0.0
+displacement = [-0.02, 0]
+[initial]
+k0 = 0.5
+[gravity]
+acceleration = [0, -9.81]
+[boundary]
+bottom = "fixed"
+right = "roller"
+[stabilisation]
+method = "consistent-f-bar"
+[[history]]
+quantity = "rigid-force"
+rigid = "wall"
+"#;
+
+/// The horizontal part of Coulomb's active thrust on that wall with this coefficient of friction at it, N.
+fn active(friction: f64) -> f64 {
+    let (phi, delta) = (30.0_f64.to_radians(), friction.atan());
+    let root = ((phi + delta).sin() * phi.sin() / delta.cos()).sqrt();
+    0.5 * 18.0e3 * 9.0 * (phi.cos() / (1.0 + root)).powi(2)
+}
+
+/// Forces of the sand on the wall away from it and down at the end of a case, which has none of its steps cut.
+fn thrust(case: &str, ranks: usize) -> [f64; 2] {
+    let scratch = Scratch::with_case(case);
+    scratch.mpirun(ranks, &["case.toml", "-q"]).expect(0);
+    let summary = manifest(&scratch.path("case.out")).summary;
+    assert_eq!((summary.steps, summary.cutbacks), (20, 0), "{summary:?}");
+    let found = history(&scratch.path("case.out"));
+    ["rigid-force-x", "rigid-force-y"].map(|name| -at(&found, name, 1.0))
+}
+
+/// The wall lets go of nothing that still pushes: it ended in its first step away from sand that yields, which all its
+/// points had left at once as it went farther in the step than they were in it.
+#[test]
+fn a_rigid_wall_that_goes_away_from_sand_has_rankines_and_coulombs_active_thrust() {
+    // Gravity that grows before it moves, in the place of stress at rest.
+    let grown = changed(WALL, "[initial]\nk0 = 0.5\n", "");
+    let grown = changed(&grown, "acceleration = [0, -9.81]", "acceleration = [0, -9.81]\nramp = 0.5");
+    let grown = changed(&grown, "displacement = [-0.02, 0]", "path = [[0.5, 0, 0], [1, -0.02, 0]]");
+    let [smooth, two] = [1, 2].map(|ranks| thrust(&grown, ranks));
+    // The base holds half a cell of what would come down: -2.4 %, in cells twice as long -10 %.
+    assert!((smooth[0] / active(0.0) - 1.0).abs() < 0.03, "{smooth:?}");
+    // 7e-13 seen.
+    assert!((two[0] / smooth[0] - 1.0).abs() < 1e-6, "{two:?} on two ranks, {smooth:?} on one");
+    // From rest; -2.2 %, and all of it slides: friction is .3 to rounding.
+    let rough = thrust(&changed(WALL, "friction = 0.0", "friction = 0.3"), 1);
+    assert!((rough[0] / active(0.3) - 1.0).abs() < 0.03, "{rough:?}");
+    assert!((rough[1] / rough[0] / 0.3 - 1.0).abs() < 1e-9, "{rough:?}");
+}
+
+#[test]
+fn a_rigid_wall_that_is_pushed_into_sand_has_rankines_passive_thrust() {
+    // On a smooth base, which has none of the thrust, and with associated flow, which has one limit.
+    let mut pushed = WALL.to_owned();
+    for (active, passive) in [
+        ("displacement = [-0.02, 0]", "displacement = [0.05, 0]"),
+        ("cell = 0.25", "cell = 0.5"),
+        ("dilation = 0", "dilation = 30"),
+        ("bottom = \"fixed\"", "bottom = \"roller\""),
+    ] {
+        pushed = changed(&pushed, active, passive);
+    }
+    let [found, _] = thrust(&pushed, 1);
+    let passive = 0.5 * 18.0e3 * 9.0 * 3.0;
+    // +.38 %: it has heaved.
+    assert!((found / passive - 1.0).abs() < 0.01, "{found} for {passive}");
 }

@@ -44,9 +44,9 @@ pub struct Surroundings<'a, const D: usize> {
 }
 
 impl<const D: usize> RigidContacts<D> {
-    /// In a step from `t` to `t + dt`, with the statuses that the last displacement, `guess`, asks for; `young` of a
-    /// point, Pa. Two reductions, and an exchange with the neighbours in dynamics. Fails on all ranks where nothing
-    /// holds a body.
+    /// In a step from `t` to `t + dt`, with the statuses that the last displacement, `guess`, asks for; what touches as
+    /// the step begins is on the outline all the same. `young` of a point, Pa. Two reductions, and an exchange with the
+    /// neighbours in dynamics. Fails on all ranks where nothing holds a body.
     pub fn of(
         around: &Surroundings<'_, D>,
         young: impl Fn(usize) -> f64,
@@ -102,11 +102,9 @@ impl<const D: usize> RigidContacts<D> {
         let motions = vec![Vector::zeros(); bodies.len()];
         let grip = |point: &RigidPoint<D>| {
             let moved = contacts.moved(point, guess, &motions);
-            // What touches as the step begins goes on to, where a body moves freely or the outline bends: the guess is
-            // of another normal.
-            let goes_on = D == 3 || bodies[point.body].is_free();
-            let least = if goes_on { point.gap } else { f64::INFINITY };
-            let is_met = point.gap_after(&moved).min(least) <= CLOSE * contacts.edge;
+            // What touches as the step begins goes on to: a body that goes away faster than the guess followed would
+            // let go of all that it holds, which soil that yields cannot stand.
+            let is_met = point.gap_after(&moved).min(point.gap_before()) <= CLOSE * contacts.edge;
             (if is_met { point.met(&moved) } else { Grip::Open }, moved)
         };
         let grips: Vec<(Grip, Vector<D>)> = contacts.points.iter().map(grip).collect();

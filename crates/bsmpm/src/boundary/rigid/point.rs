@@ -123,6 +123,11 @@ impl<const D: usize> RigidPoint<D> {
         Vector::<3>::from_fn(|k, _| if k < D { force[k] } else { turns })
     }
 
+    /// m  from the outline as the step begins.
+    pub fn gap_before(&self) -> f64 {
+        self.gap + self.approach
+    }
+
     /// m  from the outline, of material that has `moved` as seen from the body.
     pub fn gap_after(&self, moved: &Vector<D>) -> f64 {
         self.gap + self.normal.dot(moved)
@@ -184,7 +189,7 @@ impl<const D: usize> RigidPoint<D> {
 
     /// N  force on the material as a step without inertia begins.
     fn before(&self) -> Vector<D> {
-        let depth = -(self.gap + self.approach);
+        let depth = -self.gap_before();
         if depth > 0.0 { self.normal * (self.stiffness * depth) + self.vector(self.carried) } else { Vector::zeros() }
     }
 
