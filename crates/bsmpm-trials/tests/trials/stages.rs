@@ -62,8 +62,8 @@ fn an_embankment_in_lifts_settles_as_layers_that_are_placed_one_after_the_other(
     assert!(closure.abs() < 1e-6 * external, "{closure:e} of {external:e}");
 }
 
-/// Traffic drives on the lifts once they are there, and no more as the last one is taken away: the top goes down by q H/M
-/// under it, and what is left comes back. On two ranks, and over a restart with the load not yet there, the same.
+/// Traffic drives on the lifts once they are there, and no more as the last one is taken away: the top goes down by
+/// q H/M under it, and what is left comes back. On two ranks, and over a restart with the load not yet there, the same.
 #[test]
 fn a_load_acts_on_what_a_stage_has_placed() {
     const LOAD: f64 = 1e6;

@@ -99,8 +99,8 @@ impl Anchors {
         anchors
     }
 
-    /// The anchors with those of the loads that are `idle` replaced by the points nearest to their start of all that are
-    /// there. Two reductions if there are such.
+    /// The anchors with those of the loads that are `idle` replaced by the points nearest to their start of all that
+    /// are there. Two reductions if there are such.
     pub fn renewed<const D: usize>(
         &self,
         boundary: &Boundary<D>,
