@@ -144,6 +144,14 @@ fn cells_fit_between_faces_that_stay() {
 }
 
 #[test]
+fn what_no_word_knows_is_told() {
+    let disc = "rigid=[{ name = \"disc\", circle = { center = [0.4, 0.1], radius = 0.02 } }]";
+    let case = valid(COLUMN, &[disc]);
+    let told = |case: &Case| case.warnings.iter().any(|warning| warning.contains("it knows no rigid bodies"));
+    assert!(told(&case) && !told(&valid(COLUMN, &[])), "{:?}", case.warnings);
+}
+
+#[test]
 fn cells_too_wide_for_a_body_are_warned_of() {
     let lining = "body.1={ material = \"rods\", box = { lower = [0.3, 0.0], upper = [0.315, 0.1] } }";
     let warned = |word: &str| {

@@ -309,12 +309,6 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
                 record.path
             ));
         }
-        if root.gives("accuracy") {
-            report.warn(format!(
-                "{}: accuracy knows no rigid bodies: give [grid] cells that are small beside it, and steps",
-                record.path
-            ));
-        }
         if case.settles {
             report.warn(format!(
                 "{}: [initial] equilibrium is sought without rigid bodies: soil that leans on one finds none, or another; \

@@ -32,6 +32,8 @@ const SMALL: f64 = 2e-3;
 const UNCHANGED: f64 = 1.01;
 /// What a trial is judged by.
 const QUANTITY: &str = "max-displacement";
+/// Its column where the case has another one of that name.
+const WHOLE: &str = "max-displacement-of-all";
 
 /// A case that can be searched.
 #[derive(Debug)]
@@ -115,10 +117,15 @@ impl Subject {
         let whole = Quantity::MaxDisplacement { of: Counted::All };
         let mut recorded: Vec<_> = case.histories.iter().filter(|history| history.quantity == whole).collect();
         recorded.sort_by_key(|history| history.scale == 1.0);
-        let column = recorded.first().map_or(QUANTITY, |history| &history.name).to_owned();
+        // Others may have its name: the largest displacement of a body.
+        let own = if case.histories.iter().any(|of| of.name == QUANTITY) { WHOLE } else { QUANTITY };
+        let column = recorded.first().map_or(own, |history| &history.name).to_owned();
         let is_scaled = recorded.first().is_some_and(|history| history.scale != 1.0);
         if recorded.is_empty() {
-            set.push(format!("history.{}.quantity={QUANTITY}", case.histories.len()));
+            let number = case.histories.len();
+            set.extend(
+                [("quantity", QUANTITY), ("name", &column)].map(|(key, word)| format!("history.{number}.{key}={word}")),
+            );
         }
         let (title, mut conditions) = (case.title.clone(), Conditions::of(&case));
         let is_whole = stage.is_none();

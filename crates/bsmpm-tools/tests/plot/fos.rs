@@ -321,6 +321,15 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
     assert!(bench.calls() == 0 && !bench.path("slope.fos").exists());
 }
 
+/// The largest displacement of a body has the name of that of all; a search judges by the latter.
+#[test]
+fn a_case_may_record_the_displacement_of_a_body() {
+    let bench = Bench::new(SLOPE, "kink=1.373");
+    let of_a_body = "history=[{ quantity = \"max-displacement\", body = \"slope\" }]";
+    let output = bench.fos(&["--set", "body.0.name=slope", "--set", of_a_body]);
+    assert!(output.status.success(), "{output:?}");
+}
+
 #[test]
 fn a_wrong_command_line_is_refused_with_2() {
     let bench = Bench::new(SLOPE, "kink=1.373");
