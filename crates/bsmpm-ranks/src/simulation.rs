@@ -218,7 +218,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         if numbers[2] > 0.0 {
             self.make_room();
         }
-        if numbers[1] > 0.0 {
+        if numbers[..2] != [0.0; 2] {
             self.settle_loads(idle);
         }
         self.points.sort_by_cell(&self.model.grid);
@@ -238,6 +238,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         for load in (0..idle.len()).filter(|&load| idle[load]) {
             surface.position[load].clone_from(&places.loads[load]);
             surface.pressure[load].clone_from(&places.pressure[load]);
+            surface.pressure_rate[load].fill(Vector::zeros());
         }
     }
 

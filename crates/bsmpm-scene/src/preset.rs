@@ -133,7 +133,7 @@ pub(crate) fn fill(
     filling.put("solver", &["tolerance"], energy, "");
     filling.put("solver", &["force_tolerance"], force, "");
     let filled = filling.filled;
-    if filled && record.records("rigid").first().is_some() {
+    if filled && !record.records("rigid").is_empty() {
         report.warn(format!(
             "{ACCURACY}: it knows no rigid bodies: give [grid] cells that are small beside them, and steps in which they \
              go a small part of one"

@@ -12,7 +12,8 @@
 //!   `Σ A (p0 + p1)/2 · motion` of rigid strips, `r1 · u` of supports of the grid that move, and of friction at faces
 //!   and strips, and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with
 //!   v_p. Of water that flows, what drives it beside its excess pressure p, and what drains and inflows let through,
-//!   `- dt Σ_p V0 J w · drive - Σ p out`, and `½ Δm v²` of the mass that points take in. The mean force of a step: its
+//!   `- dt Σ_p V0 J w · drive - Σ p out`, `½ Δm v²` of the mass that points take in, and what lifts it from still water
+//!   into suction. The mean force of a step: its
 //!   work is exact for dead loads and of second order in dt else.
 //! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return, and what damping takes, `Σ_p V0 τ_v : e`
 //!   (see [`damping`](crate::step::damping)).

@@ -97,7 +97,7 @@ impl PresetScene<'_> {
     }
 
     /// Equal squares of about `size` (m) or smaller ones, which come out whole between faces that stay: the softening
-    /// of a material with a band_width goes by their edge. Of those down to half as long the first whose lines are
+    /// of a material with a band_width goes by their edge. Of those down to a quarter as long the first whose lines are
     /// where strips, loads and materials end, or if none are the first.
     fn squares(&self, size: f64, why: &str) -> Option<Cells> {
         let (ends, stays) = (self.ends()?, [self.stays(0)?, self.stays(1)?]);
@@ -107,7 +107,7 @@ impl PresetScene<'_> {
         if !(1.0..=MOST).contains(&fewest) {
             return None;
         }
-        let divided = (0..=fewest as usize).map(|more| length / (fewest + more as f64));
+        let divided = (0..=3 * fewest as usize).map(|more| length / (fewest + more as f64));
         let given = (!stays[along]).then_some(size);
         let fitted = |edge: f64| [0, 1].map(|axis| if stays[axis] { whole(ends[axis], edge) } else { edge });
         let is_square = |[x, y]: &[f64; 2]| x.max(*y) <= SQUARE * x.min(*y);

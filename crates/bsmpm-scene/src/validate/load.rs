@@ -4,6 +4,7 @@ use super::material::profile;
 use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring, side_of_bodies};
 use super::site::{AroundStrip, places, plate, segment};
 use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Site, Traction};
+use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
@@ -83,9 +84,19 @@ fn push(record: &Record, line: LoadedLine, around: AroundStrip<'_>, report: &mut
         return Some(Push::Stress(stresses(record)?));
     }
     let profile = profile(record, "pressure")?;
-    let (grid, bodies) = (around.grid?, around.bodies?);
+    let Some(side) = side(&line, (around.grid?, around.bodies?)) else {
+        let message = "bodies lie on both sides of it, or on none: a pressure acts on a free surface";
+        record.error("pressure", message, report);
+        return None;
+    };
+    Some(Push::Pressure { profile, side })
+}
+
+/// On which side of a line bodies lie: 1 to the left of a segment, towards the middle of a circle, in the sense of a
+/// plate's axis, else -1; `None` of both, or none.
+pub(super) fn side(line: &LoadedLine, (grid, bodies): (&GridSpec, &[Body])) -> Option<f64> {
     let holds = |at: [f64; 2]| bodies.iter().any(|body| body.region.contains(at));
-    let count = |off: f64| match line {
+    let count = |off: f64| match *line {
         LoadedLine::Segment { from, to } => {
             let (x, y) = (to[0] - from[0], to[1] - from[1]);
             let (x, y) = (-y / x.hypot(y) * off, x / x.hypot(y) * off);
@@ -100,12 +111,7 @@ fn push(record: &Record, line: LoadedLine, around: AroundStrip<'_>, report: &mut
             places(Site::Plate(plate), grid).into_iter().filter(|at| inside(*at)).count()
         }
     };
-    let Some(side) = side_of_bodies(grid, count) else {
-        let message = "bodies lie on both sides of it, or on none: a pressure acts on a free surface";
-        record.error("pressure", message, report);
-        return None;
-    };
-    Some(Push::Pressure { profile, side })
+    side_of_bodies(grid, count)
 }
 
 /// All point loads in the order of the file, without those that have an error.

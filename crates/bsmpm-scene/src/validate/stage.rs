@@ -276,8 +276,10 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         };
         let held = |place: &[f64; 3]| if lasts { at(&lasting, place) } else { one(place) };
         if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !held(place)) {
-            let message =
-                format!("at {:?} there is no body {told}: stages add or remove what it is on", &at[..case.grid.dims()]);
+            let message = format!(
+                "at {:?} there is no one body {told}: stages add or remove what it is on",
+                &at[..case.grid.dims()]
+            );
             record.error(key, message, report);
         }
     }
@@ -334,7 +336,7 @@ fn follow(case: &mut Case, lasting: &[Body]) {
     }
 }
 
-/// Records of strips and loads, the key of their place, and places along them.
+/// What acts: strips and loads with their records, the key of their place, and places along them.
 fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Record, &'static str, Vec<[f64; 3]>)> {
     let mut found = Vec::new();
     let held = case.footing.iter().map(|footing| footing.site);

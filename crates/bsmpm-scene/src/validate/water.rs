@@ -162,7 +162,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let highest = levels.into_iter().flatten().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
     let up = case.grid.dims() - 1;
     let low = case.bodies.iter().map(|body| body.region.corners()[0][up]).fold(f64::INFINITY, f64::min);
-    if highest <= low {
+    if highest <= low && !written.gives("suction") {
         report.warn("water: the water table is below all bodies: it does nothing");
     }
     if !case.tractions.is_empty() || !case.point_loads.is_empty() {

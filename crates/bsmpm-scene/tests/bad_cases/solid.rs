@@ -140,7 +140,7 @@ pub const SOLID: &[Row] = &[
         "rigid.0.revolve.polygon",
         "radius >= 0",
     ),
-    row("release  = [\"plate\"]", "remove = [\"block\"]", "footing.rectangle", "no body from the start to the end")
+    row("release  = [\"plate\"]", "remove = [\"block\"]", "footing.rectangle", "no one body from the start to the end")
         .up(37),
     row("back = \"contact\" }", "back = \"absorbing\" }", "stage.0.boundary.back", "only from the start on"),
     row(

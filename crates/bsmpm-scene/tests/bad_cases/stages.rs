@@ -70,7 +70,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }\n[[stage]]\nat = 0.5\nremove = [\"top\"]\n\
          [[point_load]]\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0",
         "point_load.0.at",
-        "there is no body as long as it acts",
+        "there is no one body as long as it acts",
     )
     .down(10),
     row(
@@ -147,6 +147,15 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "[strength_reduction]\nfactor = 1.2\nstage = \"start\"\n[output]",
         "strength_reduction.stage",
         "nothing has loaded the ground",
+    )
+    .down(2),
+    row(
+        "[output]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"pressed\"\n[[stage]]\nat = 0.25\nname = \"pressed\"\n\
+         reset_displacements = true\n[[stage]]\nat = 0.5\nreset_displacements = true\n\
+         [[prescribed]]\nfrom = [0, 1]\nto = [2, 1]\npath = [[1.0, 0, -0.01]]\n[output]",
+        "strength_reduction.stage",
+        "a strip still moves at the end",
     )
     .down(2),
     row(

@@ -401,6 +401,10 @@ fn heads_above_the_surface_are_warned_of() {
         warnings.into_iter().filter(|warning| warning.contains("does not press on the ground")).collect::<Vec<_>>()
     };
     let found = warned(&[]);
-    assert!(found.len() == 1 && found[0].starts_with("drain.1: the head rises 1.000 m above"), "{found:?}");
+    assert!(found.len() == 1 && found[0].starts_with("drain.1: the head is up to 1.000 m above"), "{found:?}");
     assert!(warned(&["drain.1.head_path=[[0, 1.0], [\"30 d\", 2.0]]"]).is_empty());
+    let gravity = "gravity={ acceleration = [0, -9.81] }";
+    assert!(warned(&[gravity, "water.level=3.0"]).is_empty(), "still water stands there");
+    let well = ["drain.1.from=[3.0, 0.2]", "drain.1.to=[3.0, 1.5]"];
+    assert!(warned(&well).is_empty(), "a well inside the ground");
 }

@@ -70,7 +70,7 @@ fn a_load_acts_on_what_a_stage_has_placed() {
     let stages = "[[stage]]\nat = 1\nadd = [\"lift-1\", \"lift-2\", \"lift-3\"]\n\
                   [[stage]]\nat = 2\napply = [\"traffic\"]\n\
                   [[stage]]\nat = 3\nrelease = [\"traffic\"]\nremove = [\"lift-3\"]\n\
-                  [[traction]]\nname = \"traffic\"\nfrom = [0, 8]\nto = [2, 8]\nstress = [0, \"-1 MPa\"]\n";
+                  [[traction]]\nname = \"traffic\"\nfrom = [0, 8]\nto = [2, 8]\npressure = \"1 MPa\"\n";
     let scratch = Scratch::with_case(&column(stages, 0.5));
     let out = |name: &str| scratch.path(name);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);

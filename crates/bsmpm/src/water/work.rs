@@ -15,11 +15,11 @@ use crate::water::residual::Flowing;
 #[derive(Clone, Debug)]
 pub struct Work {
     /// `- dt sum V0 J w . drive - sum p out`: what drives water through the ground, and what comes in or goes out; less
-    /// what lifts the water that suction takes in above the still one
+    /// what lifts the water that suction takes in above the still one, and what lets it fall to where pores fill below
     pub external: Exact,
     /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative
     pub seepage: Exact,
-    /// `sum V0 p (zeta - zeta^n)`, above the still water of the whole pressure
+    /// `sum V0 p (zeta - zeta^n)`; above the still water, and where pores fill, of the whole pressure
     pub stored: Exact,
     /// of the term that makes the pair of splines stable
     pub tau: Exact,
@@ -46,8 +46,13 @@ impl Work {
             let fall = (0..D).map(|i| wet.drive[i] * (0..D).map(|j| dF[(i, j)] * state.flux[j]).sum::<f64>());
             let fall = -through * fall.sum::<f64>();
             let taken = wet.volume * (state.content - wet.content);
-            // What suction keeps above the still water has been lifted there.
-            let lifted = (wet.ambient - wet.borne) * taken;
+            // What pores take up comes with the whole pressure; what suction keeps above the still water has been
+            // lifted there.
+            let filled = soil.map_or(0.0, |soil| {
+                let before = soil.retained(wet.pressure, weight).saturation;
+                wet.volume * soil.content(flow.bulk, state.J, state.whole) * (state.retained.saturation - before)
+            });
+            let lifted = (wet.ambient - wet.borne) * taken + wet.borne * filled;
             [
                 fall + lifted,
                 fall - through * state.flux.dot(&gradient),

@@ -5,6 +5,7 @@ use crate::grid::GridAxis;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
+use crate::validate::load::side;
 use crate::validate::{place, site};
 use crate::words::{AnalysisType, Side, Word};
 use bsmpm::model::Regime;
@@ -28,6 +29,9 @@ const ENOUGH: f64 = 1e-2;
 pub const HELD_WATER: &str = "pore pressures stay as they are at that time; those that shearing makes where it is too \
     fast to drain are not in it, and of soft clay the factor is too high by them: hold it against that of drainage = \
     \"undrained\" (bsmpm fos --undrained)";
+
+/// Parts along each axis of a face of the grid in which it is looked for ground.
+const PARTS_OF_FACE: usize = 64;
 
 /// What the whole case says of a flow: refusals of what is not shown to be right with it.
 pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
@@ -268,21 +272,30 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     }
 }
 
-/// Heads above a body's surface, where water would stand on it and press.
+/// Heads above a body's surface, where water would stand on it and press; but for what still water presses.
 fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
+    let (up, cell) =
+        (case.grid.dims() - 1, case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min));
+    let still = |x: f64| {
+        let water = case.water.iter().flat_map(|water| {
+            water.table.levels().into_iter().flatten().filter_map(move |row| water.table.table(x, row.0))
+        });
+        water.map(|(height, _)| height).fold(f64::NEG_INFINITY, f64::max)
+    };
     for (number, drain) in flow.drains.iter().enumerate() {
-        let (Given::Head(Course(rows)), false) = (&drain.given, matches!(drain.site, DrainSite::Face(_))) else {
-            continue;
-        };
+        let Given::Head(Course(rows)) = &drain.given else { continue };
+        let lines = drain.site.lines();
+        if !lines.iter().any(|line| side(line, (&case.grid, &case.bodies)).is_some()) {
+            continue; // a face of the grid, or a well inside the ground
+        }
         let highest = rows.iter().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
-        let lowest = places(drain, case).iter().map(|at| at[case.grid.dims() - 1]).fold(f64::INFINITY, f64::min);
-        if highest > lowest + 0.5 * cell {
+        let above = |at: &[f64; 3]| highest - at[up].max(still(at[0]));
+        let most = places(drain, case).iter().map(above).fold(0.0, f64::max);
+        if most > 0.5 * cell {
             report.warn(format!(
-                "drain.{number}: the head rises {:.3} m above the surface, and the water above it does not press on the \
+                "drain.{number}: the head is up to {most:.3} m above the surface, and the water above it does not press on the \
                  ground: where it stands there give [water] a level (level_path, line, line_path) up to it, and leave \
-                 head out; head is that of a pipe or well",
-                highest - lowest
+                 head out; head is that of a pipe or well"
             ));
         }
     }
@@ -295,11 +308,21 @@ fn places(drain: &Drain, case: &Case) -> Vec<[f64; 3]> {
         DrainSite::Circle { center, radius } => place::ring(*center, *radius).map(|[x, y]| [x, y, 0.0]).collect(),
         DrainSite::Plate(plate) => site::places(Site::Plate(*plate), &case.grid),
         DrainSite::Face(Face { axis, upper }) => {
-            let (axis, side) = (*axis, usize::from(*upper));
-            let at = [case.grid.lower(), case.grid.upper()][side][axis];
-            let slack = case.grid.axes[axis].shortest();
-            let corners = case.bodies.iter().map(|body| body.region.corners());
-            corners.filter(|corners| (corners[side][axis] - at).abs() < slack).flatten().collect()
+            let ends = [case.grid.lower(), case.grid.upper()];
+            let middle = |axis: usize, k: usize| {
+                let count = PARTS_OF_FACE as f64;
+                ends[0][axis] + (ends[1][axis] - ends[0][axis]) * (k as f64 + 0.5) / count
+            };
+            let across: Vec<usize> = (0..case.grid.dims()).filter(|other| other != axis).collect();
+            let place = |number: usize| {
+                let mut at = ends[usize::from(*upper)];
+                for (which, &other) in across.iter().enumerate() {
+                    at[other] = middle(other, number / PARTS_OF_FACE.pow(which as u32) % PARTS_OF_FACE);
+                }
+                at
+            };
+            let all = (0..PARTS_OF_FACE.pow(across.len() as u32)).map(place);
+            all.filter(|at| place::is_at(&case.bodies, &case.grid, *at)).collect()
         }
     }
 }
