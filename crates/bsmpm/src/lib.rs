@@ -33,6 +33,7 @@ pub mod energy;
 pub mod error;
 pub mod exact;
 pub mod free_field;
+mod gauss;
 pub mod grid;
 pub mod initial;
 pub mod kinematics;

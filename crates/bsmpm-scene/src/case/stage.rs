@@ -1,6 +1,6 @@
 //! Stages: which bodies are there when, what acts on them, and which laws they follow.
 
-use super::{Body, Case, Face, NamedMaterial, Support};
+use super::{Body, Case, Face, MotionPath, NamedMaterial, Support};
 use bsmpm::boundary::Contact;
 use bsmpm::water::flow::Motion;
 use std::ops::Range;
@@ -153,6 +153,20 @@ impl Case {
             .enumerate()
             .filter_map(|(load, grows)| self.acts_since(Acting::Load(load), before).map(|since| since + grows));
         acting.chain(self.gravity.iter().map(|gravity| gravity.ramp)).any(|end| end > until * (1.0 + 1e-9))
+    }
+
+    /// Whether a strip that acts until a time moves later.
+    pub(crate) fn still_moves(&self, until: f64) -> bool {
+        let before = self.just_before(until);
+        let footing = self.footing.iter().map(|of| &of.path);
+        let paths = footing.chain(self.prescribed.iter().map(|of| &of.path));
+        let acting = paths.enumerate().filter(|(strip, _)| self.acts_since(Acting::Strip(*strip), before).is_some());
+        let moves = |path: &MotionPath| {
+            let next = path.rows.partition_point(|row| row.0 <= until * (1.0 + 1e-9));
+            let last = next.checked_sub(1).map_or([0.0; 3], |last| path.rows[last].1);
+            path.rows[next..].iter().any(|row| row.1 != last)
+        };
+        acting.map(|(_, path)| path).any(moves)
     }
 
     /// A time at which nothing has begun that begins at the time `t`, and everything that began before.

@@ -85,7 +85,7 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
                            ramp or amplitude end before";
             table.error("stage", message, report);
         }
-        if steps > 0 && still_moves(case, until) {
+        if steps > 0 && case.still_moves(until) {
             let message = "a strip still moves at the end of that stage, and would go on while the strength falls: let its \
                            path end before";
             table.error("stage", message, report);
@@ -94,20 +94,6 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     }
     let end = case.analysis.end;
     case.output.times.retain(|t| *t <= end);
-}
-
-/// Whether a strip that acts until a time moves later.
-fn still_moves(case: &Case, until: f64) -> bool {
-    let before = case.just_before(until);
-    let footing = case.footing.iter().map(|of| &of.path);
-    let paths = footing.chain(case.prescribed.iter().map(|of| &of.path));
-    let acting = paths.enumerate().filter(|(strip, _)| case.acts_since(Acting::Strip(*strip), before).is_some());
-    let mut later = acting.flat_map(|(_, path)| {
-        let next = path.rows.partition_point(|row| row.0 <= until * (1.0 + 1e-9));
-        let last = next.checked_sub(1).map_or([0.0; 3], |last| path.rows[last].1);
-        path.rows[next..].iter().map(move |row| row.1 != last)
-    });
-    later.any(|moves| moves)
 }
 
 /// What water that flows until then does; and what only ground in which none flows can have.

@@ -269,12 +269,14 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     follow(case, &lasting);
     for (what, record, key, places) in surfaces(case, root) {
         let at = |bodies: &[Body], place: &[f64; 3]| place::is_at(bodies, &case.grid, *place);
-        let one = |place: &[f64; 3]| case.is_held(what, |body| at(std::slice::from_ref(body), place));
-        let (lasts, told) = match what {
-            Acting::Strip(_) => (true, "from the start to the end"),
-            Acting::Load(_) => (false, "as long as it acts (apply, release)"),
+        let held = |place: &[f64; 3]| match what {
+            Acting::Strip(_) => at(&lasting, place),
+            Acting::Load(_) => case.is_held(what, |body| at(std::slice::from_ref(body), place)),
         };
-        let held = |place: &[f64; 3]| if lasts { at(&lasting, place) } else { one(place) };
+        let told = match what {
+            Acting::Strip(_) => "from the start to the end",
+            Acting::Load(_) => "as long as it acts (apply, release)",
+        };
         if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !held(place)) {
             let message = format!(
                 "at {:?} there is no one body {told}: stages add or remove what it is on",

@@ -1,5 +1,6 @@
 //! Integrals of products of splines along the axes, whose products over the axes are the background's forms.
 
+use crate::gauss::GAUSS;
 use crate::grid::shape::with_width;
 use crate::grid::{Grid, KnotVector};
 use crate::lanes::LANES;
@@ -115,11 +116,3 @@ fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> FormProducts {
     }
     sums
 }
-
-/// Gauss-Legendre rule of four points on [-1, 1]: exact for products of two cubics.
-const GAUSS: [(f64, f64); 4] = [
-    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-    (-0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
-    (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
-    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-];

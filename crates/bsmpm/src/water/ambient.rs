@@ -46,11 +46,11 @@ impl Ambient {
     }
 
     /// Levels in time: that everywhere, or those of the places of a line.
-    pub fn levels(&self) -> Vec<&Vec<(f64, f64)>> {
+    pub fn levels(&self) -> Vec<&[(f64, f64)]> {
         match self {
             Self::None => Vec::new(),
             Self::Level(rows) => vec![rows],
-            Self::Line(places) => places.iter().map(|place| &place.rows).collect(),
+            Self::Line(places) => places.iter().map(|place| &place.rows[..]).collect(),
         }
     }
 

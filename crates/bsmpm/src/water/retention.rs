@@ -5,6 +5,8 @@ mod measured;
 
 pub use measured::Measured;
 
+use crate::gauss::GAUSS;
+
 /// Least relative permeability: what a soil lets through as films and vapour, and what keeps a dry one from being cut
 /// off. A flux of a millionth of the saturated one changes no balance; the flow past a dry zone would lose its only
 /// way.
@@ -13,10 +15,6 @@ const LEAST: f64 = 1e-6;
 /// Least alpha s at which the derivative of the relative permeability is taken: below n = 2 that goes beyond all bounds
 /// where air enters, as (alpha s)^(n-2).
 const ENTERED: f64 = 1e-3;
-
-/// Half of the places of Gauss' rule of four points on (-1, 1), with their shares.
-const GAUSS: [(f64, f64); 2] =
-    [(0.339_981_043_584_856_3, 0.652_145_154_862_546_1), (0.861_136_311_594_052_6, 0.347_854_845_137_453_9)];
 
 /// Retention curve of a soil.
 #[derive(Clone, Debug, PartialEq)]
@@ -199,9 +197,7 @@ impl Retention {
         }
         ((self.under(now, weight).saturation - self.under(before, weight).saturation) / change).max(0.0)
     }
-}
 
-impl Retention {
     /// J/m3  what the suction of the pore pressure `p`, Pa, has put into the pores: the integral of -q dS from full
     /// pores on, by Gauss' rule between the heads at which the curve changes its course; `weight`: of the water, N/m3.
     pub fn stored(&self, p: f64, weight: f64) -> f64 {
@@ -215,7 +211,7 @@ impl Retention {
             let to = self.curve.bend(from).min(suction);
             let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
             let above = |at: f64| self.curve.drawn(middle + half * at).effective - last;
-            area += GAUSS.iter().map(|(at, share)| half * share * (above(*at) + above(-at))).sum::<f64>();
+            area += GAUSS.iter().map(|(at, weight)| half * weight * above(*at)).sum::<f64>();
             from = to;
         }
         (1.0 - self.residual) * weight * area
