@@ -99,7 +99,7 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
     });
     let switched = |(number, load): (usize, Load<D>)| match case.acts_since(Acting::Load(number), t) {
         None => Load { amplitude: vec![(0.0, 0.0)], ..load },
-        Some(since) if since > 0.0 => Load { amplitude: course(&load, since), ..load },
+        Some(since) if since > 0.0 => Load { amplitude: course((load.ramp, &load.amplitude), since), ..load },
         Some(_) => load,
     };
     tractions.chain(forces).enumerate().map(switched).collect()
@@ -130,9 +130,9 @@ fn on_line<K: Kinematics<D>, const D: usize>(
 }
 
 /// The course of a load that begins at the time `since`, where nothing of it acts yet.
-fn course<const D: usize>(load: &Load<D>, since: f64) -> Vec<(f64, f64)> {
-    let ramp = [(load.ramp, 1.0)];
-    let rows = if load.amplitude.is_empty() { &ramp[..] } else { &load.amplitude };
+fn course((ramp, amplitude): (f64, &[(f64, f64)]), since: f64) -> Vec<(f64, f64)> {
+    let ramp = [(ramp, 1.0)];
+    let rows = if amplitude.is_empty() { &ramp[..] } else { amplitude };
     std::iter::once((since, 0.0)).chain(rows.iter().map(|(t, share)| (since + t, *share))).collect()
 }
 
@@ -248,11 +248,18 @@ fn of_ground<const D: usize>(soil: &Soil<3>) -> Soil<D> {
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.
 pub fn rigid<const D: usize>(case: &Case, t: f64) -> Vec<RigidBody<D>> {
     let divided = case.divided_at(t);
-    let of = |rigid: &Rigid| RigidBody {
-        friction: rigid.friction / divided,
-        ..rigid_body(rigid, case.grid.lower(), case.geometry)
+    let of = |(number, rigid): (usize, &Rigid)| {
+        let since = case.acts_since(Acting::Rigid(number), t);
+        let begun = since.filter(|since| *since > 0.0 && rigid.force != [0.0; 3]);
+        let later =
+            begun.map(|since| Rigid { amplitude: course((rigid.ramp, &rigid.amplitude), since), ..rigid.clone() });
+        RigidBody {
+            acts: since.is_some(),
+            friction: rigid.friction / divided,
+            ..rigid_body(later.as_ref().unwrap_or(rigid), case.grid.lower(), case.geometry)
+        }
     };
-    case.rigid.iter().map(of).collect()
+    case.rigid.iter().enumerate().map(of).collect()
 }
 
 /// An outline about a reference point, both in m.
@@ -303,6 +310,7 @@ pub(crate) fn rigid_body<const D: usize>(rigid: &Rigid, lower: [f64; 3], geometr
         (_, false) => rigid.amplitude.iter().map(|(t, share)| (*t, force * *share)).collect(),
     };
     RigidBody {
+        acts: true,
         outline,
         center,
         friction: rigid.friction,

@@ -66,6 +66,8 @@ pub enum Acting {
     Strip(usize),
     /// The number of a load: tractions, then point loads, in the order of the file.
     Load(usize),
+    /// The number of a rigid body, in the order of the file.
+    Rigid(usize),
 }
 
 /// What is before the first stage, in the place of a stage's name.
@@ -85,7 +87,7 @@ impl Case {
         stage.at <= t + SAME * self.analysis.dt
     }
 
-    /// Since when a strip or load acts (s, or pseudo-time) once the stages until the time `t` have begun; `None` if it
+    /// Since when a strip, a load or a rigid body acts (s, or pseudo-time) once the stages until the time `t` have begun; `None` if it
     /// does not. What a stage applies before any has released it does not act at the start.
     pub fn acts_since(&self, what: Acting, t: f64) -> Option<f64> {
         let comes_later = self.stages.iter().find_map(|stage| {

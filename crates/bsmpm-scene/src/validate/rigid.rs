@@ -5,7 +5,7 @@ mod solid;
 use super::site::{AroundStrip, normal};
 use super::strip;
 use super::{MOST_SHOWN_FRICTION, load, place, shape};
-use crate::case::{Case, Initial, MotionPath, Rigid, RigidShape, Support};
+use crate::case::{Acting, Case, Initial, MotionPath, Rigid, RigidShape, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::Report;
@@ -299,9 +299,18 @@ fn sharpest(outline: &Outline, axis: Option<f64>) -> Option<([f64; 2], f64)> {
     (0..corners.len()).map(of).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
+/// Whether a body has left its place before a time on the way that it is given.
+pub(super) fn has_moved(rigid: &Rigid, t: f64) -> bool {
+    strip::begins_before(&rigid.path.rows, [0.0; 3], t) || strip::begins_before(&rigid.rotation, 0.0, t)
+}
+
 /// What the rest of the case says to rigid bodies.
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
-    for (rigid, record) in case.rigid.iter().zip(root.records("rigid")) {
+    for (number, (rigid, record)) in case.rigid.iter().zip(root.records("rigid")).enumerate() {
+        if rigid.velocity != [0.0; 3] && case.acts_since(Acting::Rigid(number), 0.0).is_none() {
+            let key = if record.gives("start_velocity") { "start_velocity" } else { "start_spin" };
+            record.error(key, "a stage applies it later, at rest; let a `force` or gravity move it", report);
+        }
         if case.initial == Some(Initial::Elastic) {
             report.warn(format!(
                 "{}: the elastic equilibrium of [initial] gravity is one without rigid bodies; where they hold soil give k0, \
@@ -325,45 +334,58 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
             ));
         }
         if let RigidShape::InSpace(solid) = &rigid.shape {
-            solid::check(case, (rigid, solid), record, report);
-            continue;
-        }
-        if let Some((at, body)) = overlap(case, rigid, |body| case.is_there(body, 0.0)) {
-            let message = format!(
-                "body.{body} is in it at [{:.4}, {:.4}], by more than {OVERLAP} cells; subtract it from that body",
-                at[0], at[1]
-            );
+            solid::check(case, (number, rigid, solid), record, report);
+        } else if let Some((at, body)) = overlap(case, rigid, |body| together(case, number, body).is_some()) {
+            let message = inside(case, (number, body), &format!("{:.4}, {:.4}", at[0], at[1]));
             record.error(shape::key(record), message, report);
+        } else {
+            joined(case, (number, rigid), record, report);
         }
-        placed(case, (rigid, record), report);
     }
 }
 
-/// What stages place is not in a rigid body, nor within reach of one.
-fn placed(case: &Case, (rigid, record): (&Rigid, &Record), report: &mut Report<'_>) {
-    let Some((at, body)) = overlap(case, rigid, |body| case.stages.iter().any(|stage| stage.add.contains(&body)))
-    else {
-        let (outline, cell) = (surfaces::outline(&rigid.shape, rigid.about), longest(case));
-        let moves = rigid.free.contains(&true) || !rigid.path.rows.is_empty() || !rigid.rotation.is_empty();
-        let is_near = |body: &usize| {
-            let [lower, upper] = case.bodies[*body].bounds();
-            let reach = outline.radius() + cell;
-            moves || (0..2).all(|k| lower[k] < rigid.about[k] + reach && upper[k] > rigid.about[k] - reach)
-        };
-        if let Some(body) = case.stages.iter().flat_map(|stage| &stage.add).find(|body| is_near(body)) {
-            report.warn(format!(
-                "{}: a stage places body.{body} at it, or where it may be then: points that lie nearer than they reach, up to \
-                 half a spacing, are pushed off it at once, and are strained by that; leave that gap",
-                record.path
-            ));
+/// The stage with which a body and a rigid one are there together first; `Some(None)`: from the start on.
+fn together(case: &Case, rigid: usize, body: usize) -> Option<Option<&Stage>> {
+    let times = std::iter::once((0.0, None)).chain(case.stages.iter().map(|stage| (stage.at, Some(stage))));
+    let both = |t: f64| case.is_there(body, t) && case.acts_since(Acting::Rigid(rigid), t).is_some();
+    times.into_iter().find(|(t, _)| both(*t)).map(|(_, stage)| stage)
+}
+
+/// What is told where a body is in a rigid one when they are there together first.
+fn inside(case: &Case, (rigid, body): (usize, usize), at: &str) -> String {
+    let stage = together(case, rigid, body).flatten();
+    let (what, or) = match stage {
+        None => (format!("body.{body} is"), ""),
+        Some(stage) if stage.add.contains(&body) => (format!("a stage places body.{body}"), ""),
+        Some(Stage { at, .. }) => {
+            (format!("at t = {at}, when a stage applies it, body.{body} is"), ", or remove that body then")
         }
-        return;
     };
-    let message = format!(
-        "a stage places body.{body} in it at [{:.4}, {:.4}], by more than {OVERLAP} cells; subtract it from that body",
-        at[0], at[1]
-    );
-    record.error(shape::key(record), message, report);
+    format!("{what} in it at [{at}], by more than {OVERLAP} cells; subtract it from that body{or}")
+}
+
+/// What stages place at a rigid body, or where one is that they apply, may lie nearer than it reaches.
+fn joined(case: &Case, (number, rigid): (usize, &Rigid), record: &Record, report: &mut Report<'_>) {
+    let (outline, cell) = (surfaces::outline(&rigid.shape, rigid.about), longest(case));
+    let moves = rigid.free.contains(&true) || !rigid.path.rows.is_empty() || !rigid.rotation.is_empty();
+    let is_near = |body: usize, moves: bool| {
+        let [lower, upper] = case.bodies[body].bounds();
+        let reach = outline.radius() + cell;
+        moves || (0..2).all(|k| lower[k] < rigid.about[k] + reach && upper[k] > rigid.about[k] - reach)
+    };
+    let joins = |body: usize| Some((body, together(case, number, body).flatten()?));
+    let mut joined = (0..case.bodies.len()).filter_map(joins);
+    let found = joined.find(|(body, stage)| is_near(*body, moves && stage.add.contains(body)));
+    let Some((body, stage)) = found else { return };
+    let what = match stage.add.contains(&body) {
+        true => format!("a stage places body.{body} at it, or where it may be then: points that"),
+        false => format!("a stage applies it at body.{body}: points that have moved into it by then, or that"),
+    };
+    report.warn(format!(
+        "{}: {what} lie nearer than they reach, up to half a spacing, are pushed off it at once, and are strained by that; \
+         leave that gap",
+        record.path
+    ));
 }
 
 /// m  longest edge of all cells.

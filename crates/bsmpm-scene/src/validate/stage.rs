@@ -1,6 +1,6 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
-use super::{place, reduction, site, strip};
+use super::{place, reduction, rigid, site, strip};
 use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
@@ -44,7 +44,7 @@ pub(super) fn read_all(
 /// Something with a name that stages apply and release.
 type Named<'a> = (&'a str, Acting);
 
-/// Strips and loads with names, which are unique.
+/// Strips and loads with names, which are unique, and rigid bodies.
 fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
     let strips = root.records("footing").iter().chain(root.records("prescribed")).enumerate();
     let loads = root.records("traction").iter().chain(root.records("point_load")).enumerate();
@@ -58,7 +58,9 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
         }
         found.push((name, acting, record));
     }
-    found.into_iter().map(|(name, acting, _)| (name, acting)).collect()
+    let rigid = root.records("rigid").iter().enumerate();
+    let rigid = rigid.filter_map(|(number, record)| Some((record.text("name")?, Acting::Rigid(number))));
+    found.into_iter().map(|(name, acting, _)| (name, acting)).chain(rigid).collect()
 }
 
 fn stage(
@@ -110,9 +112,14 @@ fn named<T: Copy>(
         return Some(Vec::new());
     }
     let bodies = ["remove", "add"].contains(&key);
-    let kinds = if bodies { "[[body]]" } else { "[[traction]], [[point_load]], [[prescribed]] or [footing]" };
+    let acting = "[[traction]], [[point_load]], [[prescribed]], [[rigid]] or [footing]";
+    let kinds = if bodies { "[[body]]" } else { acting };
     let mut find = |name: &String| {
-        let found = known.iter().find(|(other, _)| other == name).map(|(_, what)| (name.clone(), *what));
+        let mut all = known.iter().filter(|(other, _)| other == name);
+        let found = all.next().map(|(_, what)| (name.clone(), *what));
+        if !bodies && all.next().is_some() {
+            record.error(key, format!("a load or support and a [[rigid]] are named \"{}\"", shortened(name)), report);
+        }
         if found.is_none() {
             let hint = hint(name, known.iter().map(|(name, _)| *name));
             let message = format!("there is no {kinds} with name = \"{}\"{hint}", shortened(name));
@@ -233,9 +240,12 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             record.error("remove", "nothing is left after it", report);
         }
         for (name, what) in &stage.apply {
-            if let Acting::Strip(number) = what
-                && strip::has_moved(case, *number, stage.at)
-            {
+            let has_moved = match *what {
+                Acting::Strip(number) => strip::has_moved(case, number, stage.at),
+                Acting::Rigid(number) => rigid::has_moved(&case.rigid[number], stage.at),
+                Acting::Load(_) => false,
+            };
+            if has_moved {
                 let message = format!(
                     "{name} has moved before it acts, and would hold what lies at its place then: let its path begin at {}",
                     stage.at
@@ -271,11 +281,11 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         let at = |bodies: &[Body], place: &[f64; 3]| place::is_at(bodies, &case.grid, *place);
         let held = |place: &[f64; 3]| match what {
             Acting::Strip(_) => at(&lasting, place),
-            Acting::Load(_) => case.is_held(what, |body| at(std::slice::from_ref(body), place)),
+            _ => case.is_held(what, |body| at(std::slice::from_ref(body), place)),
         };
         let told = match what {
             Acting::Strip(_) => "from the start to the end",
-            Acting::Load(_) => "as long as it acts (apply, release)",
+            _ => "as long as it acts (apply, release)",
         };
         if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !held(place)) {
             let message = format!(

@@ -192,13 +192,14 @@ fn normal_part(path: &MotionPath, site: Site) -> f64 {
 pub(super) fn has_moved(case: &Case, number: usize, t: f64) -> bool {
     let footing = case.footing.iter().map(|footing| &footing.path);
     let mut paths = footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path));
-    let earlier = |path: &MotionPath| {
-        let moved = |(_, u): &(f64, [f64; 3])| *u != [0.0; 3];
-        let begin = path.rows.iter().position(moved);
-        // It moves from the row before the first one that is not zero on.
-        begin.is_some_and(|row| row.checked_sub(1).map_or(0.0, |before| path.rows[before].0) < t)
-    };
-    paths.nth(number).is_some_and(earlier)
+    paths.nth(number).is_some_and(|path| begins_before(&path.rows, [0.0; 3], t))
+}
+
+/// Whether something that rests at the value `rest` goes away from it before a time.
+pub(super) fn begins_before<T: PartialEq>(rows: &[(f64, T)], rest: T, t: f64) -> bool {
+    let begin = rows.iter().position(|(_, value)| *value != rest);
+    // It moves from the row before the first one that is not at rest on.
+    begin.is_some_and(|row| row.checked_sub(1).map_or(0.0, |before| rows[before].0) < t)
 }
 
 /// Whether a path moves at all.

@@ -11,6 +11,9 @@ pub const STAGES: &[Row] = &[
     row("remove = [\"fill\"]", "remove = [\"fill\", \"fill\"]", "stage.1.remove", "has been removed before"),
     row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "is not there yet").down(1),
     row("add  = [\"fill\"]", "apply = [\"fill\"]", "stage.0.apply", "there is no [[traction]]"),
+    row("add  = [\"fill\"]", "apply = [\"plough\"]", "stage.0.apply", "plough has moved before it acts"),
+    row("add  = [\"fill\"]", "apply = [\"pipe\"]", "rigid.1.start_velocity", "a stage applies it later, at rest")
+        .down(47),
     row(
         "add  = [\"fill\"]",
         "materials = [{ from = \"sand\", to = \"clai\" }]",
@@ -57,6 +60,22 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "nothing is left after it",
     )
     .down(4),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[stage]]\nat = 0.5\napply = [\"wall\"]\n\
+         [[rigid]]\nname = \"wall\"\npolygon = [[1, 0], [1.5, 0], [1.5, 2], [1, 2]]",
+        "rigid.0.polygon",
+        "at t = 0.5, when a stage applies it, body.0 is in it",
+    )
+    .down(6),
+    row(
+        "points_per_cell = 3",
+        "points_per_cell = 3\n[[stage]]\nat = 0.5\napply = [\"lid\"]\n[[rigid]]\nname = \"lid\"\n\
+         polygon = [[0, 1], [2, 1], [2, 2], [0, 2]]\n[[point_load]]\nname = \"lid\"\nat = [1.0, 0.5]\nforce = [0, -1]",
+        "stage.0.apply",
+        "a load or support and a [[rigid]] are named \"lid\"",
+    )
+    .down(3),
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\nname = \"all\"\n[[stage]]\nat = 0.5\nadd = [\"all\"]",

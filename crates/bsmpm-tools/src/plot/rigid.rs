@@ -28,7 +28,8 @@ pub(super) fn draw(
     if record.is_solid() {
         return;
     }
-    for (number, body) in surfaces::rigid::<2>(case, 0.0).iter().enumerate() {
+    let there = |(_, body): &(usize, &RigidBody)| body.acts;
+    for (number, body) in surfaces::rigid::<2>(case, case.just_before(frame.time)).iter().enumerate().filter(there) {
         let Some(moved) = moved((record, case), (number, body), frame) else { continue };
         let lower = case.grid.lower();
         let place = |x: &Vector<2>| {

@@ -208,7 +208,7 @@ fn terrain(record: &RunRecord, [lower, upper]: [[f64; 3]; 2], (apart, time): (f6
     let Ok(case) = Case::from_text("case", &record.manifest.case.text, &[]) else { return Vec::new() };
     let mut places = Vec::new();
     let count = |axis: usize| ((upper[axis] - lower[axis]) / (0.5 * apart)).ceil().clamp(1.0, MOST_PLACES) as usize;
-    for body in surfaces::rigid::<3>(&case, 0.0) {
+    for body in surfaces::rigid::<3>(&case, case.just_before(time)).iter().filter(|body| body.acts) {
         let Outline::Terrain(terrain) = &body.outline else { continue };
         let moved = body.on_path(time);
         for (i, j) in (0..=count(0)).flat_map(|i| (0..=count(1)).map(move |j| (i, j))) {

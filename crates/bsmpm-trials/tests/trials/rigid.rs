@@ -219,3 +219,102 @@ fn a_rigid_wall_that_is_pushed_into_sand_has_rankines_passive_thrust() {
     // +.38 %: it has heaved.
     assert!((found / passive - 1.0).abs() < 0.01, "{found} for {passive}");
 }
+
+/// A plate with a force on elastic ground, which a stage places there and another one takes away.
+const STAGED: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "quasi-static"
+end = 4
+steps = 8
+[grid]
+lower = [0, 0]
+upper = [2, 4]
+cell = 0.5
+order = "quadratic"
+[material.soil]
+model = "hencky"
+young = "100 GPa"
+poisson = 0.25
+density = 2000
+[[body]]
+material = "soil"
+box = { lower = [0, 0], upper = [2, 2] }
+points_per_cell = 3
+[[rigid]]
+name = "plate"
+polygon = [[-1, 2], [3, 2], [3, 3.5], [-1, 3.5]]
+free = ["y"]
+force = [0, -1e6]
+ramp = 1
+[[stage]]
+at = 1
+apply = ["plate"]
+[[stage]]
+at = 3
+release = ["plate"]
+[boundary]
+bottom = "fixed"
+left = "roller"
+right = "roller"
+[solver]
+tolerance = 1e-14
+force_tolerance = 1e-9
+background = 0
+[[history]]
+quantity = "rigid-force"
+rigid = "plate"
+name = "force"
+[[history]]
+quantity = "rigid-displacement"
+rigid = "plate"
+name = "plate"
+[[history]]
+quantity = "displacement"
+at = [1, 2]
+name = "top"
+"#;
+
+/// The ground goes down by q H/M under what stages place on it, half of it as half of the force acts, and comes back
+/// without; the plate stays where it was. On three ranks, and over restarts, the same.
+#[test]
+fn stages_place_rigid_bodies_and_take_them_away() {
+    let scratch = Scratch::with_case(STAGED);
+    for ranks in [1, 3] {
+        scratch.goes_on(ranks, &["2", "5", "6"]);
+    }
+    let [one, three] = ["whole1", "whole3"].map(|name| history(&scratch.path(name)));
+    let exact = -1e6 / 2.0 * 2.0 / 1.2e11;
+    assert_eq!([at(&one, "force-y", 1.0), at(&one, "top-y", 1.0), at(&one, "plate-y", 1.0)], [0.0; 3]);
+    for (t, share) in [(1.5, 0.5), (2.0, 1.0), (3.0, 1.0)] {
+        assert!((at(&one, "force-y", t) / (1e6 * share) - 1.0).abs() < 1e-6, "t = {t}");
+        // The points' quadrature at the surface: 2.9e-4; the plate goes into them by the penalty.
+        let [top, plate] = ["top-y", "plate-y"].map(|name| at(&one, name, t) / (exact * share) - 1.0);
+        assert!(top.abs() < 5e-4 && plate.abs() < 1e-3, "t = {t}: {top:e} {plate:e}");
+        assert!((at(&three, "top-y", t) / at(&one, "top-y", t) - 1.0).abs() < 1e-8, "t = {t}");
+    }
+    assert_eq!(at(&one, "force-y", 4.0), 0.0);
+    assert!((at(&one, "top-y", 4.0) / exact).abs() < 1e-3);
+    assert_eq!(at(&one, "plate-y", 4.0), at(&one, "plate-y", 3.0));
+}
+
+/// What a stage places in dynamics falls from rest from then on, exactly, while nothing is near.
+#[test]
+fn a_rigid_body_that_a_stage_places_falls_from_then_on() {
+    let case = changed(STAGED, "\"quasi-static\"\nend = 4", "\"dynamic\"\nend = 0.4");
+    let case = changed(
+        &case,
+        "polygon = [[-1, 2], [3, 2], [3, 3.5], [-1, 3.5]]",
+        "circle = { center = [1, 3.3], radius = 0.2 }",
+    );
+    let case = changed(&case, "force = [0, -1e6]\nramp = 1", "density = 2500");
+    let case = changed(&case, "[[stage]]\nat = 3\nrelease = [\"plate\"]\n", "[gravity]\nacceleration = [0, -9.81]\n");
+    let scratch = Scratch::with_case(&changed(&case, "at = 1\n", "at = 0.2\n"));
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
+    let found = history(&scratch.path("out"));
+    assert_eq!(at(&found, "plate-y", 0.2), 0.0);
+    for t in [0.25, 0.4] {
+        let fallen = -0.5 * 9.81 * (t - 0.2_f64).powi(2);
+        assert!((at(&found, "plate-y", t) / fallen - 1.0).abs() < 1e-12, "t = {t}: {}", at(&found, "plate-y", t));
+    }
+}

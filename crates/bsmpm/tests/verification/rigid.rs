@@ -16,6 +16,7 @@ const RAMP: f64 = 0.1;
 
 fn of(outline: Outline, center: [f64; 2]) -> RigidBody {
     RigidBody {
+        acts: true,
         outline,
         center: center.into(),
         friction: 0.0,

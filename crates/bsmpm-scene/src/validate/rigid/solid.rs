@@ -116,20 +116,22 @@ pub(super) fn solidity(solid: &RigidSolid) -> Solidity {
 }
 
 /// No body is in it when that comes, and its outline lies within the heights that are given.
-pub(super) fn check(case: &Case, (rigid, solid): (&Rigid, &RigidSolid), record: &Record, report: &mut Report<'_>) {
+pub(super) fn check(
+    case: &Case,
+    (place, rigid, solid): (usize, &Rigid, &RigidSolid),
+    record: &Record,
+    report: &mut Report<'_>,
+) {
     let cell = case.grid.shortest();
     let key = ["box", "sphere", "revolve", "terrain"].into_iter().find(|key| record.gives(key)).unwrap_or("box");
     let body = crate::surfaces::rigid_body::<3>(rigid, [0.0; 3], case.geometry);
     for (number, of) in case.bodies.iter().enumerate() {
-        let stage = case.stages.iter().find(|stage| stage.add.contains(&number));
+        let Some(stage) = super::together(case, place, number) else { continue };
         let moved = body.on_path(stage.map_or(0.0, |stage| stage.at));
         let depth = |at: [f64; 3]| -body.outline.nearest(&body.pose(&moved).seen(&Vector::from(at))).distance;
         let is_in = |at: &[f64; 3]| of.region.contains_in_space(*at) && depth(*at) > OVERLAP * cell;
         if let Some([x, y, z]) = places(solid, &moved, of.region.corners(), cell).into_iter().find(is_in) {
-            let what = stage.map_or(format!("body.{number} is"), |_| format!("a stage places body.{number}"));
-            let message = format!(
-                "{what} in it at [{x:.4}, {y:.4}, {z:.4}], by more than {OVERLAP} cells; subtract it from that body"
-            );
+            let message = super::inside(case, (place, number), &format!("{x:.4}, {y:.4}, {z:.4}"));
             record.error(key, message, report);
         }
     }

@@ -13,6 +13,8 @@ pub const MOTIONS: usize = 3;
 /// about it, rad, counter-clockwise, and all is per metre of thickness; in space it does not turn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidBody<const D: usize = 2> {
+    /// whether it is there; one that is not goes on along its path, and else stays where it is, at rest
+    pub acts: bool,
     /// about the reference point, as it stands at the start
     pub outline: Outline,
     /// m  the reference point at the start, from the grid's lower corner; of a body with mass its centre
@@ -84,10 +86,11 @@ impl<const D: usize> RigidBody<D> {
     pub fn reaches_into(&self, moved: &Vector<3>, (other, there): (&Self, &Vector<3>)) -> bool {
         let (own, others) = (self.pose(moved), other.pose(there));
         let apart = (own.center - others.center).norm() - self.outline.radius() - other.outline.radius();
+        let both = self.acts && other.acts;
         let is_inside = |x: &Vector<D>| {
             other.outline.nearest(&others.seen(&own.place(x))).distance < -TOUCHING * other.outline.radius()
         };
-        apart < 0.0 && self.outline.places().iter().any(is_inside)
+        both && apart < 0.0 && self.outline.places().iter().any(is_inside)
     }
 
     /// Where it is once it has `moved`.

@@ -1,6 +1,6 @@
 //! Which points are near a rigid body in a step, how far from it, and what they start the step as.
 
-use super::body::{RigidBody, RigidState};
+use super::body::{MOTIONS, RigidBody, RigidState};
 use super::point::{Grip, RigidPoint, along, tangents};
 use super::{BodyInStep, PENALTY, RigidContacts};
 use crate::error::StepError;
@@ -73,7 +73,9 @@ impl<const D: usize> RigidContacts<D> {
         for (number, (body, state)) in bodies.iter().zip(states).enumerate() {
             let mut at = BodyInStep::of(body, state, (t, dt), around);
             let found = contacts.points.len();
-            at.least = contacts.gather((number, &at), (around, &young), dt);
+            if body.acts {
+                at.least = contacts.gather((number, &at), (around, &young), dt);
+            }
             for point in &contacts.points[found..] {
                 if !around.dynamic || point.gap > MEETING * comes(point, &at, around, dt) + CLOSE * contacts.edge {
                     continue;
@@ -177,6 +179,23 @@ impl<const D: usize> RigidContacts<D> {
 impl<const D: usize> BodyInStep<D> {
     /// With its motions as they are without the soil.
     fn of(body: &RigidBody<D>, state: &RigidState, (t, dt): (f64, f64), around: &Surroundings<'_, D>) -> Self {
+        let [before, after] = [t, t + dt].map(|t| body.pick(&state.moved, &body.on_path(t)));
+        let before = RigidState { moved: before, ..*state };
+        let (resists, least) = (Matrix3::zeros(), f64::INFINITY);
+        let zero = Vector::zeros();
+        let still = Self {
+            body: RigidBody { free: [false; MOTIONS], friction: 0.0, ..body.clone() },
+            before,
+            predicted: after,
+            external: zero,
+            inertia: zero,
+            resists,
+            flight: None,
+            least,
+        };
+        if !body.acts {
+            return still;
+        }
         let external = body.acting(t + dt, &around.body_force);
         // Without inertia it goes on as it did: soil is expected to.
         let (mut step, mut inertia) = (state.velocity * dt, Vector::zeros());
@@ -184,10 +203,8 @@ impl<const D: usize> BodyInStep<D> {
             inertia = body.mass / (dt * dt);
             step += external.component_div(&body.mass) * (dt * dt);
         }
-        let before = RigidState { moved: body.pick(&state.moved, &body.on_path(t)), ..*state };
-        let predicted = body.pick(&(before.moved + step), &body.on_path(t + dt));
-        let resists = Matrix3::zeros();
-        Self { body: body.clone(), before, predicted, external, inertia, resists, flight: None, least: f64::INFINITY }
+        let predicted = body.pick(&(before.moved + step), &after);
+        Self { body: body.clone(), predicted, external, inertia, ..still }
     }
 
     /// Goes on as nothing is near: a constant force is then exact.
