@@ -164,7 +164,7 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
             report.note("analysis.end", "1.0", "pseudo-time of a quasi-static analysis");
             1.0
         }
-        (false, AnalysisType::Dynamic | AnalysisType::Consolidation) => {
+        (false, AnalysisType::Dynamic | AnalysisType::InTime | AnalysisType::Consolidation) => {
             let message = format!("missing; a {kind} analysis needs its end");
             report.error(analysis.origin, &analysis.path_of("end"), message);
             return None;

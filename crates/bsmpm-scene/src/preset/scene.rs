@@ -54,7 +54,7 @@ impl<'a> PresetScene<'a> {
                 let (crossed, way) = (preset.crossed, analysis.number("end")? * self.shear_wave()?);
                 (way / (crossed * cell), format!("a shear wave crosses {crossed} cells in each"))
             }
-            AnalysisType::QuasiStatic => {
+            AnalysisType::QuasiStatic | AnalysisType::InTime => {
                 let steps = |moved: (f64, f64)| moved.0 / (moved.1 * cell);
                 let moved = self.moved(preset).reduce(|a, b| if steps(b) > steps(a) { b } else { a });
                 let (steps, advance) = moved.map_or((0.0, 0.0), |moved| (steps(moved), moved.1));

@@ -56,8 +56,9 @@ pub static ROOT: Table = Table {
 
 static ANALYSIS: Table = Table {
     header: "[analysis]",
-    doc: "Dynamic (Newmark 1/4, 1/2 unless damped), quasi-static (no inertia; time is a pseudo-time without unit), or \
-          consolidation (no inertia; water flows in real time)",
+    doc: "Dynamic (Newmark 1/4, 1/2 unless damped), quasi-static (no inertia; time is a pseudo-time without unit), \
+          quasi-static-in-time (no inertia; in s, for strengths by the rate), or consolidation (no inertia; water flows in \
+          real time)",
     keys: &[
         key("type", Choice(AnalysisType::WORDS), Required, "whether inertia acts, and what time is"),
         key("end", Quantity(In::Time, Range::POSITIVE), Optional, "end of the run; quasi-static: 1.0 unless given"),

@@ -148,7 +148,7 @@ fn retention(of: &Record, report: &mut Report<'_>) -> Option<Retention> {
         return None;
     }
     let rows = measured(of, residual, report)?;
-    Some(Retention { curve: Curve::Measured(Measured::new(rows)), residual })
+    Some(Retention::new(Curve::Measured(Measured::new(rows)), residual))
 }
 
 /// Rows of a measured curve: suction head, effective saturation, relative permeability.

@@ -3,7 +3,7 @@
 use super::material::profile;
 use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring, side_of_bodies};
 use super::site::{AroundStrip, places, plate, segment};
-use crate::case::{Acting, Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Site, Traction};
+use crate::case::{Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Site, Traction};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -309,18 +309,9 @@ pub(super) fn sudden(case: &Case, report: &mut Report<'_>) {
     if case.settles || !matches!(case.initial, Some(Initial::AtRest(_))) {
         return;
     }
-    let is_sudden = |ramp: f64, amplitude: &[(f64, f64)]| match amplitude.first() {
-        Some((t, share)) => *t == 0.0 && *share != 0.0,
-        None => ramp == 0.0,
-    };
-    let tractions = case.tractions.iter().map(|load| ("traction", is_sudden(load.ramp, &load.amplitude))).enumerate();
-    let loads = case.point_loads.iter().map(|load| ("point_load", is_sudden(load.ramp, &load.amplitude))).enumerate();
-    for (load, (number, (name, is_sudden))) in tractions.chain(loads).enumerate() {
-        if !is_sudden || case.acts_since(Acting::Load(load), 0.0).is_none() {
-            continue;
-        }
+    for load in case.sudden_loads() {
         report.warn(format!(
-            "{name}.{number}: acts in full from time 0, and the stress at the start by k0 does not hold it; give it a ramp"
+            "{load}: acts in full from time 0, and the stress at the start by k0 does not hold it; give it a ramp"
         ));
     }
 }

@@ -7,7 +7,7 @@ use super::strip::moves;
 use crate::case::{Base, Body, Case, Drain, Geometry, Initial, Prescribed, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{Side, Word};
+use crate::words::{AnalysisType, Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::newmark::Newmark;
@@ -67,15 +67,35 @@ fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
 }
 
-/// A rate needs a time: that of quasi-static analyses is none.
+/// Plastic strain of a step above which its logarithm is found to 1e-9 (`tests/material/softening.rs` of `bsmpm`).
+const DIGITS: f64 = 5e-14;
+
+/// A rate needs a time: that of a quasi-static analysis is none.
 fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
     let named = case.materials.iter().zip(record.named("material")).enumerate();
     let made = |number: usize| case.is_followed(number);
     for (_, (named, (_, written))) in named.filter(|(number, _)| made(*number)) {
-        if case.analysis.regime == Regime::QuasiStatic && named.material.over(1.0).is_some() {
-            let message = "the time of a quasi-static analysis is no time: a strength by the rate needs a dynamic one";
-            let key = if written.gives("rate_parameter") { "rate_parameter" } else { "model" };
+        let (kind, is_of_clay) = (case.analysis.kind, written.gives("rate_parameter"));
+        let is_timed = kind == AnalysisType::Dynamic || kind == AnalysisType::InTime && is_of_clay;
+        if !is_timed && named.material.over(1.0).is_some() {
+            let message = match (kind, is_of_clay) {
+                (AnalysisType::Consolidation, _) => "strength by the rate was not shown to be right where water flows",
+                (_, true) => {
+                    "the time of a quasi-static analysis is no time: a strength by the rate needs \"quasi-static-in-time\" or \
+                     \"dynamic\""
+                }
+                (_, false) => "its strength by the rate was shown to be right in dynamics only: take \"dynamic\"",
+            };
+            let key = if is_of_clay { "rate_parameter" } else { "model" };
             written.error(key, message, report);
+        }
+        let slowest = written.number("reference_rate").filter(|_| is_of_clay).map(|rate| rate * case.analysis.dt);
+        if let Some(strain) = slowest.filter(|strain| *strain < DIGITS) {
+            report.warn(format!(
+                "{}: the strain of a step at that rate is {strain:.1e}, near the last digits of what strains are made of: \
+                 strength there is off by up to rate_parameter; a larger rate, with the cohesion of it",
+                written.path_of("reference_rate")
+            ));
         }
     }
 }

@@ -62,6 +62,8 @@ choice! {
         Dynamic = "dynamic",
         /// No inertia; time is a pseudo-time.
         QuasiStatic = "quasi-static",
+        /// No inertia; in real time, which a strength by the rate needs.
+        InTime = "quasi-static-in-time",
         /// No inertia; water flows in real time.
         Consolidation = "consolidation",
     }
@@ -72,7 +74,7 @@ impl AnalysisType {
     pub fn regime(self) -> Regime {
         match self {
             Self::Dynamic => Regime::Dynamic,
-            Self::QuasiStatic | Self::Consolidation => Regime::QuasiStatic,
+            Self::QuasiStatic | Self::InTime | Self::Consolidation => Regime::QuasiStatic,
         }
     }
 

@@ -179,7 +179,7 @@ pub const WITHOUT_FLOW: &[Row] = &[
         "poisson = 0.3",
         "poisson = 0.3\ndrainage = \"coupled\"\nporosity = 0.4\npermeability = 1e-9",
         "analysis.type",
-        "its time has no unit",
+        "water flows in real time",
     )
     .up(13),
     row("[output]", "[[history]]\nquantity = \"water-balance\"\n[output]", "history.0.quantity", "no material is")

@@ -342,6 +342,20 @@ pub const QUASI_STATIC: &[Row] = &[
     row("steps = 4", "steps = 4\ngamma = 0.6", "analysis.gamma", "no inertia").down(1),
     row("steps = 4", "steps = 4.5", "analysis.steps", "whole number"),
     row(
+        "model   = \"hencky\"",
+        "model = \"sensitive-clay\"\ncohesion = 1e4\nsensitivity = 2\nsoftening_strain = 20\n\
+         rate_parameter = 0.1\nreference_rate = 1e-4",
+        "material.soil.rate_parameter",
+        "needs \"quasi-static-in-time\" or \"dynamic\"",
+    )
+    .down(4),
+    row(
+        "model   = \"hencky\"",
+        "model = \"mu-i\"\nmu_s = 0.38\nmu_2 = 0.6\ninertial_number = 0.3\ngrain_diameter = 1e-3\ngrain_density = 2500",
+        "material.soil.model",
+        "in dynamics only",
+    ),
+    row(
         "box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }\npoints_per_cell = 3",
         "box = 5\npoints_per_cell = 3",
         "body.0.box",

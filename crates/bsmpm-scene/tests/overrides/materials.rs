@@ -225,7 +225,7 @@ fn cam_clay_and_its_start() {
 
 /// Sensitive clay: what is left of its cohesion at every height, the strain in the law's own measure, and its rate.
 #[test]
-fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate_in_dynamics() {
+fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate() {
     let keys = "model = \"sensitive-clay\", young = 1e7, poisson = 0.49, density = 1.7e3, softening_strain = 20, \
                 cohesion = { value = 2e4, at_y = 2.0, per_metre = 2e3 }, sensitivity = 4";
     let rate = "rate_parameter = 0.1, reference_rate = 1e-4";

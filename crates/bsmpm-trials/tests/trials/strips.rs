@@ -131,3 +131,66 @@ fn a_strip_that_rubs_and_lets_go_is_the_same_on_any_ranks_by_newton_and_after_re
     let text = |run: &str| std::fs::read_to_string(scratch.path(run).join("history.csv")).unwrap();
     assert!(text("three") == text("part"));
 }
+
+/// A smooth strip on clay whose strength follows the rate, in 40 steps.
+const RATED: &str = r#"geometry = "plane-strain"
+[analysis]
+type  = "quasi-static-in-time"
+end   = "1000 s"
+steps = 40
+[grid]
+lower = [0.0, 0.0]
+upper = [5.0, 3.0]
+cell  = "250 mm"
+order = "quadratic"
+[material.clay]
+model    = "sensitive-clay"
+young    = "1 GPa"
+poisson  = 0.49
+cohesion = "10 kPa"
+sensitivity      = 1
+softening_strain = 20
+rate_parameter   = 0.1
+reference_rate   = 1e-12
+[[body]]
+material = "clay"
+box = { lower = [0.0, 0.0], upper = [5.0, 2.5] }
+points_per_cell = 3
+[footing]
+from = [0.0, 2.5]
+to   = [1.0, 2.5]
+displacement = [0.0, -0.002]
+base = "smooth"
+[boundary]
+bottom = "fixed"
+left   = "roller"
+right  = "roller"
+[stabilisation]
+method = "consistent-f-bar"
+[solver]
+background = 1e-3
+max_iterations = 1000
+[[history]]
+quantity = "footing-pressure"
+name  = "N"
+scale = 1e-4
+"#;
+
+/// Ten times as fast, everything that yields is stronger by mu c, so that the limit load is by mu N c, N that of clay
+/// without rate: nothing else of the flow changes.
+#[test]
+fn a_strip_carries_more_by_the_rate_in_quasi_static_time() {
+    let scratch = Scratch::with_case(RATED);
+    let end = |name: &str, more: &[&str]| {
+        scratch.mpirun(1, &[&["case.toml", "-q", "-o", name], more].concat()).expect(0);
+        let found = history(&scratch.path(name));
+        *found.get("N").unwrap().last().unwrap()
+    };
+    let (slow, fast) = (end("slow", &[]), end("fast", &["--set", "analysis.end=100 s"]));
+    let same = end("same", &["--set", "analysis.end=100 s", "--set", "material.clay.reference_rate=1e-11"]);
+    assert!((same / slow - 1.0).abs() < 1e-12, "the rate counts over that of the reference: {slow} {same}");
+    scratch.write("case.toml", RATED.replace("rate_parameter   = 0.1\nreference_rate   = 1e-12\n", ""));
+    let still = end("still", &[]);
+    let gained = (fast - slow) / (0.1 * still);
+    assert!((gained - 1.0).abs() < 2e-3, "{slow} {fast} {still}: {gained}");
+}

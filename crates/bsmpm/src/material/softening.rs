@@ -39,6 +39,8 @@ pub struct Rate {
 const RATE: f64 = 3.0;
 /// Most evaluations of the return for its own plastic strain: bisection alone needs as many.
 const EVALUATIONS: usize = 80;
+/// Ratio of bounds of the growth between which the logarithm is straight enough for secants.
+const STRAIGHT: f64 = 8.0;
 /// Difference between the plastic strain that a strength follows from and that of the return that it leads to that
 /// counts as none: by the latter, and by the elastic strain of the trial, whose digits it comes from.
 const AGREED: [f64; 2] = [1e-13, 1e-14];
@@ -98,8 +100,9 @@ impl SofteningMohrCoulomb {
     /// How much more the cohesion is where κ has grown by `growth` in the step, and what that grows by with it.
     #[inline(always)]
     fn quickened<R: Real>(&self, growth: R) -> (R, R) {
-        let Some(Rate { per_decade, reference }) = self.rate else { return (growth.like(1.0), growth.like(0.0)) };
-        let least = self.dt * reference / 3.0_f64.sqrt(); // growth at the reference rate
+        let (Some(Rate { per_decade, .. }), Some(least)) = (self.rate, self.slowest()) else {
+            return (growth.like(1.0), growth.like(0.0));
+        };
         let quick = growth.like(least).below(growth);
         let over = growth / least;
         let decades = growth.like(0.0).unless(quick, [over, over], |[over, _]| over.log10());
@@ -140,8 +143,14 @@ impl SofteningMohrCoulomb {
         split(three(|k| trial[k] - tau[k])).2 * ((2.0_f64 / 3.0).sqrt() / (2.0 * self.moduli.mu))
     }
 
+    /// Growth of κ in the step at the reference rate, if there is one.
+    fn slowest(&self) -> Option<f64> {
+        self.rate.map(|rate| self.dt * rate.reference / 3.0_f64.sqrt())
+    }
+
     /// The growth of κ that the return with its own strength makes: by secants between bounds, by halves where these
-    /// leave them. Not a number where that finds none.
+    /// leave them. A strength by the rate follows the logarithm of the growth, which may be any of a dozen decades: there
+    /// by halves of the logarithm, until bounds are so near that it looks straight. Not a number where that finds none.
     #[inline(always)]
     fn solve<R: Real>(&self, trial: [R; 3], kappa: R) -> R {
         let none = kappa.like(0.0);
@@ -167,8 +176,16 @@ impl SofteningMohrCoulomb {
             high = R::choose(gap.below(none), growth, high);
             let slope = (gap - last_gap) / (growth - last_growth);
             let secant = growth - gap / slope;
-            let middle = R::choose(high.below(none.like(f64::INFINITY)), (low + high) * 0.5, made);
-            let inside = low.below(secant) & secant.below(high);
+            let mut middle = (low + high) * 0.5;
+            let mut inside = low.below(secant) & secant.below(high);
+            if let Some(slowest) = self.slowest() {
+                let (slowest, bounded) = (none.like(slowest), high.below(none.like(f64::INFINITY)));
+                let is_far = bounded & slowest.below(high) & (low * STRAIGHT).below(high);
+                let by_logarithm = R::choose(low.below(slowest), slowest, (low * high).root());
+                middle = R::choose(is_far, by_logarithm, middle);
+                inside = inside & !is_far;
+            }
+            let middle = R::choose(high.below(none.like(f64::INFINITY)), middle, made);
             (last_growth, last_gap) = (growth, gap);
             growth = R::choose(inside, secant, middle);
         }

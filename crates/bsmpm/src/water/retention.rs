@@ -23,6 +23,8 @@ pub struct Retention {
     pub curve: Curve,
     /// -  saturation that no suction removes, of which Bishop's chi takes no part
     pub residual: f64,
+    /// m and m  heads at which the curve changes its course, from 0 on, and its integral until there
+    filled: Vec<[f64; 2]>,
 }
 
 /// How the effective saturation and the relative permeability follow the suction head s, m.
@@ -38,6 +40,9 @@ pub enum Curve {
     /// rows as measured
     Measured(Measured),
 }
+
+/// Heads at most up to which a curve is integrated once for all.
+const BENDS: usize = 32;
 
 /// What a curve says under one suction.
 struct Drawn {
@@ -99,6 +104,12 @@ impl Curve {
         }
     }
 
+    /// m  integral of the effective saturation over heads between which it does not change its course: Gauss' rule
+    fn between(&self, from: f64, to: f64) -> f64 {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        GAUSS.iter().map(|(at, weight)| half * weight * self.drawn(middle + half * at).effective).sum()
+    }
+
     /// Under the suction head `s`, m, above 0.
     fn drawn(&self, s: f64) -> Drawn {
         match self {
@@ -144,9 +155,23 @@ impl Curve {
 }
 
 impl Retention {
+    /// Of a curve with what no suction removes, -.
+    pub fn new(curve: Curve, residual: f64) -> Self {
+        let mut filled = vec![[0.0; 2]];
+        while filled.len() < BENDS {
+            let [from, area] = filled[filled.len() - 1];
+            let to = curve.bend(from);
+            if !to.is_finite() {
+                break;
+            }
+            filled.push([to, area + curve.between(from, to)]);
+        }
+        Self { curve, residual, filled }
+    }
+
     /// Of van Genuchten's curve: `alpha`, 1/m, `n` and `residual`, -.
-    pub const fn van_genuchten(alpha: f64, n: f64, residual: f64) -> Self {
-        Self { curve: Curve::VanGenuchten { alpha, n }, residual }
+    pub fn van_genuchten(alpha: f64, n: f64, residual: f64) -> Self {
+        Self::new(Curve::VanGenuchten { alpha, n }, residual)
     }
 
     /// Under the pore pressure `p`, Pa, of water of the unit weight `weight`, N/m3.
@@ -201,19 +226,18 @@ impl Retention {
     /// J/m3  what the suction of the pore pressure `p`, Pa, has put into the pores: the integral of -q dS from full
     /// pores on, by Gauss' rule between the heads at which the curve changes its course; `weight`: of the water, N/m3.
     pub fn stored(&self, p: f64, weight: f64) -> f64 {
-        let (suction, mut from, mut area) = (-p / weight, 0.0, 0.0);
+        let suction = -p / weight;
         if suction <= 0.0 {
             return 0.0;
         }
-        // By parts: the area under the curve, above what it ends with.
-        let last = self.curve.drawn(suction).effective;
+        let [mut from, mut area] = self.filled[self.filled.partition_point(|[head, _]| *head <= suction) - 1];
         while from < suction {
             let to = self.curve.bend(from).min(suction);
-            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-            let above = |at: f64| self.curve.drawn(middle + half * at).effective - last;
-            area += GAUSS.iter().map(|(at, weight)| half * weight * above(*at)).sum::<f64>();
+            area += self.curve.between(from, to);
             from = to;
         }
+        // By parts: the area under the curve, above what it ends with.
+        area -= suction * self.curve.drawn(suction).effective;
         (1.0 - self.residual) * weight * area
     }
 }
@@ -222,8 +246,14 @@ impl Retention {
 mod tests {
     use super::*;
 
-    const LOAM: Retention = Retention::van_genuchten(3.6, 1.56, 0.18);
-    const SAND: Retention = Retention::van_genuchten(14.5, 2.68, 0.1);
+    fn loam() -> Retention {
+        Retention::van_genuchten(3.6, 1.56, 0.18)
+    }
+
+    fn sand() -> Retention {
+        Retention::van_genuchten(14.5, 2.68, 0.1)
+    }
+
     const WEIGHT: f64 = 9810.0;
 
     /// Van Genuchten's alpha and n.
@@ -238,12 +268,12 @@ mod tests {
             let left = 1.9722e-11 * (head * WEIGHT).powf(2.4279);
             [head, 1.0 - left, 1.0 - 2.207 * left.powf(1.0121)]
         };
-        Retention { curve: Curve::Measured(Measured::new(heads.into_iter().map(row).collect())), residual: 0.0 }
+        Retention::new(Curve::Measured(Measured::new(heads.into_iter().map(row).collect())), 0.0)
     }
 
     #[test]
     fn saturation_and_permeability_follow_their_formulas() {
-        for soil in [LOAM, SAND] {
+        for soil in [loam(), sand()] {
             let (alpha, n) = parameters(&soil);
             let m = 1.0 - 1.0 / n;
             for head in [0.01, 0.1, 1.0, 3.0] {
@@ -258,8 +288,8 @@ mod tests {
             assert_eq!(soil.under(1e4, WEIGHT), Retained::FULL);
         }
         // Half of what can leave has left where (alpha s)^n = 2^(1/m) - 1; fully dry soil keeps the residual water.
-        assert!((SAND.under(-1e12, WEIGHT).saturation - 0.1).abs() < 1e-6);
-        assert_eq!(SAND.under(-1e12, WEIGHT).permeability, LEAST);
+        assert!((sand().under(-1e12, WEIGHT).saturation - 0.1).abs() < 1e-6);
+        assert_eq!(sand().under(-1e12, WEIGHT).permeability, LEAST);
     }
 
     /// Off by 1e-6 at most, as the sum that it is held against; of clay, under little suction, by 4e-5.
@@ -267,7 +297,7 @@ mod tests {
     fn what_suction_stores_is_the_integral_of_suction_by_saturation() {
         let rows = measured((0..8).map(|k| 0.1 * f64::from(k)));
         for (soil, error) in
-            [(LOAM, 2e-6), (SAND, 2e-6), (Retention::van_genuchten(0.8, 1.09, 0.07), 1e-4), (rows, 2e-6)]
+            [(loam(), 2e-6), (sand(), 2e-6), (Retention::van_genuchten(0.8, 1.09, 0.07), 1e-4), (rows, 2e-6)]
         {
             for head in [0.03, 0.5, 2.0, 30.0] {
                 // By parts in a million parts of the logarithm of the suction.
@@ -285,7 +315,7 @@ mod tests {
 
     #[test]
     fn the_slope_is_the_derivative() {
-        for soil in [LOAM, SAND] {
+        for soil in [loam(), sand()] {
             for head in [0.02, 0.3, 2.0] {
                 let (p, step) = (-head * WEIGHT, 3e-5 * head * WEIGHT);
                 let (found, saturation) = (soil.under(p, WEIGHT).slope, |p: f64| soil.under(p, WEIGHT).saturation);
@@ -303,7 +333,7 @@ mod tests {
     #[test]
     fn changes_are_derivatives_and_bounded_where_air_enters() {
         let clay = Retention::van_genuchten(0.8, 1.09, 0.07);
-        for soil in [LOAM, SAND, clay] {
+        for soil in [loam(), sand(), clay] {
             let (alpha, n) = parameters(&soil);
             for head in [0.01, 0.3, 2.0] {
                 let (p, step) = (-head * WEIGHT, 3e-5 * head * WEIGHT);
@@ -338,7 +368,7 @@ mod tests {
         let (coarse, fine) = (error(10), error(20));
         assert!(fine < 2e-5 && coarse / fine > 4.0, "{coarse} {fine}");
         let steps = vec![[0.0, 1.0, 1.0], [0.1, 1.0, 1.0], [0.2, 0.4, 0.01], [1.0, 0.4, 0.01], [1.1, 0.05, 0.0]];
-        let stepped = Retention { curve: Curve::Measured(Measured::new(steps)), residual: 0.05 };
+        let stepped = Retention::new(Curve::Measured(Measured::new(steps)), 0.05);
         for soil in [measured([0.0, 0.2, 0.4, 0.7, 1.0]), measured([0.0, 1.0]), stepped] {
             let at = |s: f64| soil.under(-s * WEIGHT, WEIGHT);
             for k in 1..300 {
@@ -358,7 +388,7 @@ mod tests {
 
     #[test]
     fn saturation_rises_with_the_pressure_and_so_does_permeability() {
-        for soil in [LOAM, SAND] {
+        for soil in [loam(), sand()] {
             let under = |k: i32| soil.under(-WEIGHT * 1.3_f64.powi(k), WEIGHT);
             for k in -40..20 {
                 let (more, less) = (under(k), under(k + 1));

@@ -111,6 +111,29 @@ fn tangent_is_the_derivative() {
     assert!(seen.len() == 5 && seen.values().all(|&count| count > 1_000) && worst < 1e-6, "{seen:?}, {worst}");
 }
 
+/// Steps as they come on a surface that a rate has hardened: trials anywhere between the strength at rest and what it is
+/// twelve decades above the reference, so that the plastic strain may be of any size.
+#[test]
+fn a_strength_by_the_rate_is_found_whatever_the_plastic_strain() {
+    let (young, poisson, peak, per_decade) = (1e3, 0.49, 3.0, 0.1);
+    let shear = Elastic { young, poisson }.lame().1;
+    let mut least = f64::INFINITY;
+    for (k, reference) in (0..2_000).flat_map(|k| [1e-3, 1e-7, 1e-10, 1e-13].map(|reference| (k, reference))) {
+        let law = law(poisson, [0.0, 0.0, peak], [0.0, 0.0, peak], 1.0, Decay::Exponential);
+        let law = law.at_rate(Rate { per_decade, reference }).over(1.0).expect("a rate");
+        let material = Material::SofteningMohrCoulomb(law);
+        let beyond = peak * (1.0 + 2.2 * f64::from(k) / 2_000.0); // of the strength at rest
+        let strain = beyond / (2.0 * shear);
+        let (response, after) = answer(&material, &stretched([strain, 0.0, -strain]), 0.0);
+        let found = 0.5 * (response.principal_tau()[0] - response.principal_tau()[2]);
+        let quick = 1.0 + per_decade * (after * 3.0_f64.sqrt() / reference).log10().max(0.0);
+        assert!((found / (peak * quick) - 1.0).abs() < 1e-9, "{found} at {after:e}, {reference:e}");
+        least = if after > 0.0 { least.min(after) } else { least };
+    }
+    println!("plastic strains from {least:.1e}");
+    assert!(least < 1e-12, "{least}");
+}
+
 /// Shear without friction or change of volume: `2μ (e - p) = c(κ)`, κ = 2p/√3, in one step or many.
 #[test]
 fn pure_shear_softens_by_its_own_plastic_strain_in_any_number_of_steps() {

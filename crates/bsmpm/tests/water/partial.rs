@@ -17,7 +17,9 @@ const K: f64 = 1e-5;
 /// Pa
 const RIGID: f64 = 1e10;
 const POROSITY: f64 = 0.4;
-const LOAM: Retention = Retention::van_genuchten(2.0, 2.0, 0.1);
+fn loam() -> Retention {
+    Retention::van_genuchten(2.0, 2.0, 0.1)
+}
 
 /// A body of the cells h of these numbers in a grid of one column more to the right and one row more on top.
 fn ground([columns, rows]: [usize; 2], h: f64, retention: Retention) -> Plane {
@@ -72,7 +74,7 @@ fn richards(soil: &Retention, q: f64, heights: &[f64]) -> Vec<f64> {
 /// A column of 1 m above the water table, so many cells high, into the top of which `rate` (m/s) is put.
 fn column(cells: usize, rate: f64, runs_off: bool) -> Plane {
     let h = 1.0 / cells as f64;
-    let mut scene = ground([1, cells], h, LOAM);
+    let mut scene = ground([1, cells], h, loam());
     let points = edge(at(0.0, 1.0), at(1.0, 0.0), 1, h);
     let normals = vec![at(0.0, 1.0); points.len()];
     let flow = flow(&mut scene);
@@ -94,7 +96,7 @@ fn off(points: &Points<2>, q: f64) -> f64 {
     order.sort_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1]));
     let heights: Vec<f64> = order.iter().map(|&p| points.x[p][1]).collect();
     let found = points.pore_pressure.as_ref().expect("water flows");
-    let exact = richards(&LOAM, q, &heights);
+    let exact = richards(&loam(), q, &heights);
     order.iter().zip(&exact).map(|(&p, psi)| (found[p] / WEIGHT - psi).abs()).fold(0.0, f64::max)
 }
 
@@ -212,11 +214,11 @@ fn suction_presses_the_skeleton_as_bishop_says() {
     let flow = flow(&mut scene);
     (flow.faces, flow.inflows) = (Vec::new(), Vec::new());
     run(&mut scene, [1.0], |_, _, report| println!("{} iterations", report.iterations));
-    let held = |J: f64, p: f64| (J - 1.0 + POROSITY) * LOAM.under(p, WEIGHT).saturation;
+    let held = |J: f64, p: f64| (J - 1.0 + POROSITY) * loam().under(p, WEIGHT).saturation;
     let (mut low, mut high) = (start, 0.0);
     let of = |p: f64| {
         // J by the fixed point of that, which contracts.
-        (0..60).fold(1.0, |J: f64, _| (2.0 * J * LOAM.under(p, WEIGHT).effective * p / young).exp())
+        (0..60).fold(1.0, |J: f64, _| (2.0 * J * loam().under(p, WEIGHT).effective * p / young).exp())
     };
     for _ in 0..80 {
         let p = 0.5 * (low + high);

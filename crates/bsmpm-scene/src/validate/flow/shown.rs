@@ -48,9 +48,9 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
         }
         return;
     };
-    let timeless = case.analysis.kind == AnalysisType::QuasiStatic;
-    if let Some(analysis) = root.record("analysis").filter(|_| timeless) {
-        let message = "its time has no unit, and water flows in real time: take \"consolidation\" or \"dynamic\"";
+    let flows = matches!(case.analysis.kind, AnalysisType::Consolidation | AnalysisType::Dynamic);
+    if let Some(analysis) = root.record("analysis").filter(|_| !flows) {
+        let message = "water flows in real time, with balances of its own: take \"consolidation\" or \"dynamic\"";
         analysis.error("type", message, report);
     }
     discretised(case, root, report);
