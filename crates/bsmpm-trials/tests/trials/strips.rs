@@ -188,7 +188,7 @@ fn a_strip_carries_more_by_the_rate_in_quasi_static_time() {
     };
     let (slow, fast) = (end("slow", &[]), end("fast", &["--set", "analysis.end=100 s"]));
     let same = end("same", &["--set", "analysis.end=100 s", "--set", "material.clay.reference_rate=1e-11"]);
-    assert!((same / slow - 1.0).abs() < 1e-12, "the rate counts over that of the reference: {slow} {same}");
+    assert!((same / slow - 1.0).abs() < 1e-9, "the rate counts over that of the reference: {slow} {same}");
     scratch.write("case.toml", RATED.replace("rate_parameter   = 0.1\nreference_rate   = 1e-12\n", ""));
     let still = end("still", &[]);
     let gained = (fast - slow) / (0.1 * still);
