@@ -123,7 +123,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<(), StepError> {
-    let model = &model.at_rest();
+    let model = &model.settling();
     let start = Undeformed::of(model, points, halo)?;
     let problem = start.problem(model, points, halo);
     stiffness::assemble(&problem, None, solver)?;

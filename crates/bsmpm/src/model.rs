@@ -16,6 +16,7 @@ use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
 use crate::water::ambient::{Ambient, StillWater};
+use crate::water::flow::Motion;
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
@@ -187,6 +188,16 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     {
         let boundary = self.boundary.at_rest(self.gravity.map(|gravity| gravity.acceleration));
         Self { regime: Regime::QuasiStatic, shaking: None, boundary, ..self.clone() }
+    }
+
+    /// The model as at rest, with the pore pressures of the start: nothing flows before the first step.
+    pub fn settling(&self) -> Self
+    where
+        K: Clone,
+    {
+        let mut model = self.at_rest();
+        model.water.iter_mut().flat_map(|water| &mut water.flow).for_each(|flow| flow.motion = Motion::Held);
+        model
     }
 
     /// Whether all points have one Young's modulus.

@@ -142,20 +142,6 @@ pub const FLOW: &[Row] = &[
     )
     .down(2),
     row(
-        "[solver]",
-        "[gravity]\nacceleration = [0, -9.81]\n[initial]\ngravity = \"elastic\"\n[solver]",
-        "initial.gravity",
-        "give k0",
-    )
-    .down(3),
-    row(
-        "[solver]",
-        "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 0.5\nequilibrium = \"plastic\"\n[solver]",
-        "initial.equilibrium",
-        "give k0",
-    )
-    .down(4),
-    row(
         "type   = \"consolidation\"\nend    = \"20 year\"\ndt     = \"1 h\"\ngrowth = 1.2\ndt_max = \"60 d\"",
         "type = \"dynamic\"\nend = 1.0\ndt = 0.1\n[shaking]\nacceleration = [[0.5, 1.0, 0.0]]",
         "shaking",

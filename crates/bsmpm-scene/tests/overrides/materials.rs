@@ -3,6 +3,7 @@
 use super::{FULL, STATIC, set, valid};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Law, Match, Material, Separation};
+use bsmpm::model::Regime;
 use bsmpm_scene::Case;
 
 /// Laws by their words, with what is not given left at its default; strength is divided by the factor of the case.
@@ -244,14 +245,14 @@ fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate() {
         let message = format!("{:?}", with(text).expect_err("refused"));
         assert!(message.contains(told), "{text}: {message}");
     }
-    let clay = format!("material.soil={{ {keys}, {rate} }}");
-    let message = format!("{:?}", set(STATIC, &[&clay]).expect_err("no time"));
-    assert!(message.contains("a strength by the rate needs a dynamic one"), "{message}");
+    let (clay, time) = (format!("material.soil={{ {keys}, {rate} }}"), "analysis.type=quasi-static-in-time");
+    let case = set(STATIC, &[&clay, time]).expect("in real time");
+    assert!(!case.analysis.kind.is_timeless() && case.analysis.regime == Regime::QuasiStatic);
 }
 
-/// mu(I): its numbers in SI, and that it is for dynamics.
+/// mu(I): its numbers in SI.
 #[test]
-fn granular_flow_has_its_numbers_and_a_time() {
+fn granular_flow_has_its_numbers() {
     let keys = "model = \"mu-i\", young = 1e7, poisson = 0.3, density = 1.5e3, mu_s = 0.38, inertial_number = 0.3, \
                 grain_diameter = \"2 mm\"";
     let with = |fast: &str| {
@@ -267,7 +268,4 @@ fn granular_flow_has_its_numbers_and_a_time() {
     assert_eq!(flow.parameters(), [0.38, 0.64, 0.3, 0.002, 2.6e3]);
     let message = format!("{:?}", with("0.3").expect_err("faster is not weaker"));
     assert!(message.contains("allowed: mu_2 >= mu_s = 0.38"), "{message}");
-    let flow = format!("material.soil={{ {keys}, mu_2 = 0.64, grain_density = 2.6e3 }}");
-    let message = format!("{:?}", set(STATIC, &[&flow]).expect_err("no time"));
-    assert!(message.contains("a strength by the rate needs a dynamic one"), "{message}");
 }

@@ -66,7 +66,7 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<Settling, StepError> {
-    let model = &model.at_rest();
+    let model = &model.settling();
     let Criteria { force, max_iterations, .. } = model.criteria;
     let criteria = Criteria { energy: ANY, force: WITHIN * force, max_iterations };
     let sought = &Model { criteria, ..model.clone() };

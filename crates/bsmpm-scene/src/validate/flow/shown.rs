@@ -190,12 +190,12 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some(record) = root.record("gravity").filter(|record| record.number("ramp").is_some_and(|ramp| ramp > 0.0)) {
         record.error("ramp", not_shown("gravity that grows is"), report);
     }
-    if let Some(initial) = root.record("initial") {
-        let elastic = matches!(case.initial, Some(Initial::Elastic));
-        for (_, key) in [(elastic, "gravity"), (case.settles, "equilibrium")].into_iter().filter(|(given, _)| *given) {
-            let message = "a state that is led to equilibrium before the first step is not shown to be right with water that \
-                           flows; give k0";
-            initial.error(key, message, report);
+    if case.settles || case.initial == Some(Initial::Elastic) {
+        for load in case.sudden_loads() {
+            report.warn(format!(
+                "{load}: acts in full from time 0, and the stress at the start bears it without excess pressure: nothing \
+                 consolidates under it; give it a ramp"
+            ));
         }
     }
     if let Some(shaking) = root.record("shaking") {
