@@ -54,13 +54,13 @@ fn a_load_on_ground_that_has_drained_goes_to_the_water_first() {
     assert!(pressure(4.0).abs() < 1e-3 * LOADS[0] && (settled(4.0) / LOADS[0] - 1.0).abs() < 1e-3, "{}", settled(4.0));
     let first = share * LOADS[1];
     assert!((pressure(4.005) / first - 1.0).abs() < 1e-3, "{}, {first}", pressure(4.005));
-    // Steps of half the length are off by half as much: .35 % at .1 s, .3 % at .3 s.
+    // Steps of 5 ms: .44 and .38 % off in the pressure, .6 and .3 % in the settlement.
     for later in [0.1, 0.3] {
         let [there, mean] = left(share * later).map(|left| left * first);
         let [p, s] = [pressure(4.0 + later), settled(4.0 + later) - LOADS[0]];
         println!("{later} s: {p} Pa, exactly {there}; settled {s} Pa/M, exactly {}", LOADS[1] - mean);
         assert!((p / there - 1.0).abs() < 0.01, "{p}, exactly {there}");
-        assert!((s / (LOADS[1] - mean) - 1.0).abs() < 0.02, "{s}, exactly {}", LOADS[1] - mean);
+        assert!((s / (LOADS[1] - mean) - 1.0).abs() < 0.01, "{s}, exactly {}", LOADS[1] - mean);
     }
 }
 
