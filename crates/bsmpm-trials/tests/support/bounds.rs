@@ -11,7 +11,7 @@ const EDGES: usize = 32;
 pub fn pipe(depth: f64, nodes: usize) -> f64 {
     let angle = |k: usize| PI * (k as f64 / EDGES as f64 - 0.5);
     let around = |k: usize| {
-        if k % EDGES == 0 { [0.0, angle(k).sin() / 2.0] } else { [angle(k).cos() / 2.0, angle(k).sin() / 2.0] }
+        if k.is_multiple_of(EDGES) { [0.0, angle(k).sin() / 2.0] } else { [angle(k).cos() / 2.0, angle(k).sin() / 2.0] }
     };
     body_in_clay(&(0..=EDGES).rev().map(around).collect::<Vec<_>>(), depth, nodes)
 }

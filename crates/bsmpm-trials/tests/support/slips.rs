@@ -163,8 +163,8 @@ impl Program {
     /// A jump of 1 m of the left of a slip over its right.
     fn add(&mut self, slip: &Slip, jump: [f64; 2], cost: f64) -> usize {
         let (column, [from, to]) = (self.costs.len(), slip.nodes);
-        for axis in 0..2 {
-            self.elements.extend([(2 * from + axis, column, jump[axis]), (2 * to + axis, column, -jump[axis])]);
+        for (axis, &part) in jump.iter().enumerate() {
+            self.elements.extend([(2 * from + axis, column, part), (2 * to + axis, column, -part)]);
         }
         self.work.push(-slip.weight * jump[1] * slip.along[0].signum());
         self.costs.push(cost);
