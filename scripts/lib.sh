@@ -30,6 +30,27 @@ build_programs() {
     companion=$(grep '/bsmpm$' <<<"$built") || die "cargo built no bsmpm"
 }
 
+# solver_of COMMIT: the solver of a commit, built in a work tree of its own under target/commits unless that was done before; of
+# `.` that of the working tree. Prints its path.
+solver_of() {
+    local sha tree made=$root/target/commits
+    if [[ $1 == . ]]; then
+        build build --release --package bsmpm-par --bins | grep '/bsmpm-par$' && return
+    fi
+    sha=$(git -C "$root" rev-parse --short "$1^{commit}") || return
+    tree=$made/tree
+    if [[ ! -x $made/bsmpm-par-$sha ]]; then
+        rm -rf -- "$tree"
+        git -C "$root" worktree prune
+        mkdir -p -- "$made"
+        git -C "$root" worktree add --quiet --force --detach "$tree" "$sha" >&2 || return
+        (root=$tree CARGO_TARGET_DIR=$made/build && export CARGO_TARGET_DIR &&
+            cp -- "$(build build --release --package bsmpm-par --bins | grep '/bsmpm-par$')" "$made/bsmpm-par-$sha") || return
+        git -C "$root" worktree remove --force "$tree"
+    fi
+    printf '%s\n' "$made/bsmpm-par-$sha"
+}
+
 # default NAME VALUE: an environment variable, unless the caller has set it.
 default() {
     export "$1=${!1-$2}"

@@ -66,7 +66,7 @@ such case; 80 no stable state was found; that of a trial that broke, as 70, 71, 
 
 Examples:
   bsmpm fos cases/slope_stability.toml
-  bsmpm fos cases/excavation.toml --stage \"pit 1\" --to 8
+  bsmpm fos cases/excavation.toml --stage \"pit 1\" --to 4
   bsmpm fos case.toml --width 0.01 --set grid.cell=\"0.5 m\" -o fine -- mpirun -n 4 bsmpm-par")]
 pub struct FosArguments {
     /// The case file: quasi-static or, with --stage, a consolidation, with a plastic material and a load

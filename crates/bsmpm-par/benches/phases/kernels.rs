@@ -2,8 +2,9 @@
 
 use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::error::{SolveError, StepError};
+use bsmpm::free_field::FreeField;
 use bsmpm::grid::{Shape, transfer};
-use bsmpm::kinematics::{Kinematics, PlaneStrain};
+use bsmpm::kinematics::{Gradient, Kinematics};
 use bsmpm::model::Model;
 use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
 use bsmpm::points::Points;
@@ -28,9 +29,9 @@ pub fn shortest(seconds: f64, mut call: impl FnMut()) -> f64 {
 }
 
 /// A state to measure.
-pub struct Bench<'a> {
-    pub model: &'a Model<PlaneStrain, 2>,
-    pub points: &'a Points<2>,
+pub struct Bench<'a, K, const D: usize> {
+    pub model: &'a Model<K, D>,
+    pub points: &'a Points<D>,
     pub halo: &'a dyn Halo,
     /// s  time and step
     pub times: (f64, f64),
@@ -38,13 +39,15 @@ pub struct Bench<'a> {
     pub seconds: f64,
 }
 
-impl Bench<'_> {
+impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
     /// Prints a row for every phase, under the displacement `guess` (m, nodal) of the last step: what flowed then flows
     /// on.
     pub fn run(&self, guess: &[f64], solver: &mut dyn LinearSolver) -> Result<(), StepError> {
         let Self { model, points, halo, times, .. } = *self;
         let shape = Shape::at(&model.grid, points)?;
-        let nodes = Nodes::map(model, &shape, points, times, halo)?;
+        let mut nodes = Nodes::map(model, &shape, points, times, halo)?;
+        let field = FreeField::after(model, points, times, halo)?;
+        field.drive(&mut nodes);
         let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), times);
         let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
         let along = |(c, &guess): (usize, &f64)| match nodes.prescribed[c] {
@@ -56,8 +59,13 @@ impl Bench<'_> {
         let traffic = Traffic::of(model);
         self.row("(1) shape functions, sorting apart", None, || drop(black_box(Shape::at(&model.grid, points))));
         self.row("(2) points to nodes", None, || drop(black_box(Nodes::map(model, &shape, points, times, halo))));
+        if !field.columns.is_empty() {
+            self.row("columns of the free field", None, || {
+                drop(black_box(FreeField::after(model, points, times, halo)))
+            });
+        }
         self.row("(4a) gather of grad u", Some(traffic.gradients), || {
-            drop(black_box(transfer::gradients::<PlaneStrain, 2, _>((&shape, &points.x), &u, |_, grad| grad)))
+            drop(black_box(transfer::gradients::<K, D, _>((&shape, &points.x), &u, |_, grad| grad)))
         });
         if model.stabilisation.averages() {
             self.row("(4c-e) average of F-bar", Some(traffic.average), || {
@@ -74,8 +82,8 @@ impl Bench<'_> {
             }
         });
         self.row("(5a) scatter of the internal force", Some(0), || {
-            drop(black_box(transfer::divergence::<PlaneStrain, 2>((&shape, &points.x), |p| {
-                PlaneStrain::flux(&points.sigma.at(p), &points.F.at(p))
+            drop(black_box(transfer::divergence::<K, D>((&shape, &points.x), |p| {
+                K::flux(&points.sigma.at(p), &points.F.at(p))
             })));
         });
         let whole = traffic.gradients + traffic.average + traffic.force;
@@ -113,12 +121,12 @@ struct Traffic {
 }
 
 impl Traffic {
-    fn of(model: &Model<PlaneStrain, 2>) -> Self {
+    fn of<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Self {
         let number = size_of::<f64>();
         let width = model.grid.order() + 1;
-        let (functions, tensor) = (2 * 2 * width, 4);
+        let (functions, tensor) = (2 * D * width, D * K::Gradient::SLOPES);
         // Without functions of their own averages read the rows with the derivatives between.
-        let averaging = if model.stabilisation.lowers() { 2 * (width - 1) } else { functions };
+        let averaging = if model.stabilisation.lowers() { D * (width - 1) } else { functions };
         let averages = model.stabilisation.averages();
         let mean = usize::from(averages);
         Self {
@@ -130,14 +138,15 @@ impl Traffic {
 }
 
 /// Bytes of a point in memory at rest, and with its shape functions and two trial states.
-pub fn bytes(mut points: Points<2>, model: &Model<PlaneStrain, 2>) -> Result<String, StepError> {
+pub fn bytes<K: Kinematics<D>, const D: usize>(mut points: Points<D>, model: &Model<K, D>) -> String {
     let (rest, width) = (points.memory(), model.grid.order() + 1);
     let averaged = model.stabilisation.averages();
     let lowered = model.stabilisation.lowers();
-    let shape = 8 * (2 * 2 * width + if lowered { 2 * (width - 1) } else { 0 });
+    let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
+    let shape = D * (2 * width + if lowered { width - 1 } else { 0 });
     // Two trial states: that of the iteration, and the next one while it is judged.
-    let trial = 2 * 8 * (4 + usize::from(averaged));
-    Ok(format!("{rest}; {}", rest + shape + trial))
+    let trial = 2 * (D * K::Gradient::SLOPES + usize::from(averaged) + usize::from(flows));
+    format!("{rest}; {}", rest + size_of::<f64>() * (shape + trial))
 }
 
 /// A solver that forgets what it is given.

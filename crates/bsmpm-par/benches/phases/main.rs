@@ -7,7 +7,7 @@
 mod kernels;
 mod machine;
 
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Model;
 use bsmpm::points::Points;
 use bsmpm_par::checkpoint::{self, Opened, Wanted};
@@ -17,7 +17,7 @@ use bsmpm_ranks::linear::KspSolver;
 use bsmpm_ranks::signals::Requests;
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_ranks::timers::Timers;
-use bsmpm_scene::Case;
+use bsmpm_scene::{Case, Geometry};
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use petsc_rs::Petsc;
@@ -36,7 +36,7 @@ fn main() -> ExitCode {
     let set: Vec<String> = rest.iter().filter(|argument| *argument != "--set").cloned().collect();
     let Ok(universe) = launch::start() else { return ExitCode::FAILURE };
     let seconds = seconds.parse().map_err(Into::into);
-    match seconds.and_then(|seconds| measure(&universe, (case, &set), checkpoint, seconds)) {
+    match seconds.and_then(|seconds| measure(&universe, (case, &set), (checkpoint, seconds))) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("phases: {error}");
@@ -46,16 +46,21 @@ fn main() -> ExitCode {
 }
 
 /// A state of a run: its points, sorted, the nodal displacement of its last step (m), and its time (s).
-type State = (Points<2>, Vec<f64>, f64);
+type State<const D: usize> = (Points<D>, Vec<f64>, f64);
 
 /// What a checkpoint holds.
-fn state(universe: &Universe, path: &Path, model: &mut Model<PlaneStrain, 2>) -> Result<State, Box<dyn Error>> {
+fn state<K: Kinematics<D>, const D: usize>(
+    universe: &Universe,
+    path: &Path,
+    model: &mut Model<K, D>,
+) -> Result<State<D>, Box<dyn Error>> {
     let hdf5 = Hdf5::initialize(universe)?;
     let refused = |refusal: checkpoint::Refusal| refusal.reason;
     let (found, _) = checkpoint::find(&universe.world(), Wanted::Named(path)).map_err(refused)?;
     let found = found.ok_or("there is no checkpoint")?;
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
-    let mut points = Points::holding(&names, bsmpm::material::state_width(&model.materials));
+    let width = bsmpm::material::state_width(&model.materials);
+    let mut points = Points::holding(&names, width);
     let opened = Opened::new((&hdf5, universe.world()), &found).map_err(refused)?;
     opened.points(points.named_columns()).map_err(refused)?;
     let state = opened.state().and_then(|text| checkpoint::CheckpointState::parse(path, &text)).map_err(refused)?;
@@ -64,31 +69,40 @@ fn state(universe: &Universe, path: &Path, model: &mut Model<PlaneStrain, 2>) ->
         return Err("the checkpoint is of slabs that are cut into parts".into());
     }
     let layers = model.grid.layers().len();
-    let guess = opened.guess((layers, model.grid.layer_nodes() * 2), 0..layers).map_err(refused)?;
+    let guess = opened.guess((layers, model.grid.layer_nodes() * D), 0..layers).map_err(refused)?;
     opened.close().map_err(refused)?;
-    points.surface = model.boundary.surface();
+    points.surface = state.surface().ok_or("the checkpoint's surfaces are of another case")?;
+    let columns = state.free_field.iter().map(|column| column.points(width)).collect::<Option<_>>();
+    points.free_field = columns.ok_or("the columns of the checkpoint's free field are not whole")?;
     points.sort_by_cell(&model.grid);
     Ok((points, guess, found.record.time()))
 }
 
-fn measure(
-    universe: &Universe,
-    (case, set): (&str, &[String]),
-    path: &str,
-    seconds: f64,
-) -> Result<(), Box<dyn Error>> {
+fn measure(universe: &Universe, (case, set): (&str, &[String]), how: (&str, f64)) -> Result<(), Box<dyn Error>> {
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
     let text = bsmpm_scene::load(Path::new(case))?;
     let case = Case::from_bytes(case, &text, set).map_err(|errors| format!("{errors:?}"))?;
-    let mut model = bsmpm_scene::model::model::<PlaneStrain, 2>(&case)?;
+    match case.geometry {
+        Geometry::PlaneStrain => measure_in::<PlaneStrain, 2>(universe, &case, how),
+        Geometry::Axisymmetric => measure_in::<Axisymmetric, 2>(universe, &case, how),
+        Geometry::Solid => measure_in::<Solid, 3>(universe, &case, how),
+    }
+}
+
+fn measure_in<K: Kinematics<D>, const D: usize>(
+    universe: &Universe,
+    case: &Case,
+    (path, seconds): (&str, f64),
+) -> Result<(), Box<dyn Error>> {
+    let mut model = bsmpm_scene::model::model::<K, D>(case)?;
     let (points, guess, time) = state(universe, Path::new(path), &mut model)?;
     let columns = model.grid.columns();
     let slabs = Slabs::new(vec![columns.start, columns.end], 1, columns).ok_or("no columns")?;
     let (timers, requests) = (Rc::new(Timers::default()), Rc::new(Requests::default()));
     let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests)));
-    let choice = setup::linear(&case, 1, &[]);
+    let choice = setup::linear(case, 1, &[]);
     let petsc = Petsc::initialize(universe, &choice.options())?;
-    let mut solver = KspSolver::<2, 2>::new(&petsc, choice, &model.grid, Rc::clone(&halo), timers);
+    let mut solver = KspSolver::<D, D>::new(&petsc, choice, &model.grid, Rc::clone(&halo), timers);
     println!(
         "| {} points, {:.4} s | ns per point | bytes per point, read and written | of a step |",
         points.len(),
@@ -100,7 +114,7 @@ fn measure(
     bench.run(&guess, &mut solver)?;
     println!(
         "| bytes of a point; with its shape functions and two trial states | {} | | |",
-        kernels::bytes(points, &model)?
+        kernels::bytes(points, &model)
     );
     let (triad, multiply_add) = (machine::triad(seconds), machine::multiply_add(seconds));
     println!("| triad, GB/s; dependent-free multiply-add, GFlop/s | {triad:.1}; {multiply_add:.1} | | |");

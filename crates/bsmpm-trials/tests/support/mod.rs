@@ -2,11 +2,13 @@
 
 #![allow(dead_code)] // every test program takes its part of this
 
+pub mod bounds;
 pub mod cases;
 pub mod circles;
 pub mod driver;
 pub mod processes;
 pub mod results;
+pub mod slips;
 
 pub use processes::{Ears, Output, Running};
 

@@ -39,6 +39,7 @@ mod strips;
 mod sweep;
 mod told;
 mod told_parts;
+mod undrained_stages;
 mod unsaturated_column;
 
 #[path = "../support/mod.rs"]

@@ -150,9 +150,31 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
     }
 }
 
+fn not_shown(what: &str) -> String {
+    format!("{what} not shown to be right with water that flows")
+}
+
+/// What a stage changes.
+fn of_stage(record: &Record, report: &mut Report<'_>) {
+    let bodies = "bodies that are removed or placed are";
+    let changes = [
+        ("remove", bodies),
+        ("add", bodies),
+        ("boundary", "faces that change are"),
+        ("strength_reduction", "strength that changes while water flows is"),
+    ];
+    for (key, what) in changes.into_iter().filter(|(key, _)| record.gives(key)) {
+        record.error(key, not_shown(what), report);
+    }
+    if record.gives("materials") {
+        let instead = "what is applied faster than \"coupled\" soil drains, it carries as without drainage; laws of \
+                       total stress can be exchanged in a \"quasi-static\" analysis";
+        record.error("materials", format!("{}: {instead}", not_shown("laws that are exchanged are")), report);
+    }
+}
+
 /// What acts on the bodies.
 fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
-    let not_shown = |what: &str| format!("{what} not shown to be right with water that flows");
     if let Some(rigid) = root.records("rigid").first() {
         report.error(rigid.origin, &rigid.path, not_shown("rigid bodies are"));
     }
@@ -174,19 +196,7 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (_, record) in rubs.zip(strips).filter(|(rubs, _)| *rubs) {
         report.error(record.origin, &record.path, not_shown("strips that rub and let go are"));
     }
-    for record in root.records("stage") {
-        let (bodies, laws) = ("bodies that are removed or placed are", "laws that are exchanged are");
-        let changes = [
-            ("remove", bodies),
-            ("add", bodies),
-            ("materials", laws),
-            ("boundary", "faces that change are"),
-            ("strength_reduction", "strength that changes while water flows is"),
-        ];
-        for (key, what) in changes.into_iter().filter(|(key, _)| record.gives(key)) {
-            record.error(key, not_shown(what), report);
-        }
-    }
+    root.records("stage").iter().for_each(|record| of_stage(record, report));
     if let Some(record) = root.record("gravity").filter(|record| record.number("ramp").is_some_and(|ramp| ramp > 0.0)) {
         record.error("ramp", not_shown("gravity that grows is"), report);
     }
