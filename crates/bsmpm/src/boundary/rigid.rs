@@ -24,7 +24,7 @@ use nalgebra::Matrix3;
 use point::RigidPoint;
 
 /// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia.
-const PENALTY: f64 = 1e3;
+const PENALTY: f64 = 1e2;
 /// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are: in
 /// a plane, and in space, where friction turns in them too, with inertia and without.
 const AT_ONCE: [usize; 3] = [8, 12, 24];
