@@ -39,7 +39,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             }
             if depth > DEEPEST && self.told_rigid.insert(2 * number + 1) {
                 self.warn(format!(
-                    "rigid `{name}`: at t = {t} points are {depth:.2} cells in it, usually 1e-5: it was pushed over them, or \
+                    "rigid `{name}`: at t = {t} points are {depth:.2} cells in it, usually 1e-4: it was pushed over them, or \
                      its force is beyond what its penalty is made for; more steps"
                 ));
             }

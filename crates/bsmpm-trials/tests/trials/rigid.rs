@@ -1,9 +1,9 @@
 //! Rigid bodies: the same on any number of ranks and over restarts, what is told of them, and the thrust of sand on a
 //! wall.
 
-use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{at, history, manifest};
+use crate::support::{Scratch, shipped};
 
 /// A block falls on soil beside a plough that goes through its surface.
 const CASE: &str = r#"
@@ -173,14 +173,15 @@ fn active(friction: f64) -> f64 {
     0.5 * 18.0e3 * 9.0 * (phi.cos() / (1.0 + root)).powi(2)
 }
 
-/// Forces of the sand on the wall away from it and down at the end of a case, which has none of its steps cut.
-fn thrust(case: &str, ranks: usize) -> [f64; 2] {
+/// Forces of the sand on the wall away from it and down, by the wall's history `force`, at the end of a case, which has
+/// none of its steps cut.
+fn thrust(case: &str, ranks: usize, force: &str) -> [f64; 2] {
     let scratch = Scratch::with_case(case);
     scratch.mpirun(ranks, &["case.toml", "-q"]).expect(0);
     let summary = manifest(&scratch.path("case.out")).summary;
     assert_eq!((summary.steps, summary.cutbacks), (20, 0), "{summary:?}");
     let found = history(&scratch.path("case.out"));
-    ["rigid-force-x", "rigid-force-y"].map(|name| -at(&found, name, 1.0))
+    ["x", "y"].map(|axis| -at(&found, &format!("{force}-{axis}"), 1.0))
 }
 
 /// The wall lets go of nothing that still pushes: it ended in its first step away from sand that yields, which all its
@@ -191,15 +192,29 @@ fn a_rigid_wall_that_goes_away_from_sand_has_rankines_and_coulombs_active_thrust
     let grown = changed(WALL, "[initial]\nk0 = 0.5\n", "");
     let grown = changed(&grown, "acceleration = [0, -9.81]", "acceleration = [0, -9.81]\nramp = 0.5");
     let grown = changed(&grown, "displacement = [-0.02, 0]", "path = [[0.5, 0, 0], [1, -0.02, 0]]");
-    let [smooth, two] = [1, 2].map(|ranks| thrust(&grown, ranks));
+    let [smooth, two] = [1, 2].map(|ranks| thrust(&grown, ranks, "rigid-force"));
     // The base holds half a cell of what would come down: -2.4 %, in cells twice as long -10 %.
     assert!((smooth[0] / active(0.0) - 1.0).abs() < 0.03, "{smooth:?}");
     // 7e-13 seen.
     assert!((two[0] / smooth[0] - 1.0).abs() < 1e-6, "{two:?} on two ranks, {smooth:?} on one");
     // From rest; -2.2 %, and all of it slides: friction is .3 to rounding.
-    let rough = thrust(&changed(WALL, "friction = 0.0", "friction = 0.3"), 1);
+    let rough = thrust(&changed(WALL, "friction = 0.0", "friction = 0.3"), 1, "rigid-force");
     assert!((rough[0] / active(0.3) - 1.0).abs() < 0.03, "{rough:?}");
     assert!((rough[1] / rough[0] / 0.3 - 1.0).abs() < 1e-9, "{rough:?}");
+}
+
+/// The same wall as a strip in contact: it, too, ended in its first step, whose points pressed nothing before.
+#[test]
+fn a_strip_in_contact_that_goes_away_from_sand_at_rest_has_rankines_and_coulombs_active_thrust() {
+    let body = "[[rigid]]\nname = \"wall\"\npolygon = [[-0.9, 0], [0, 0], [0, 3.3], [-0.9, 3.3]]\nfriction = 0.0";
+    let strip = "[[prescribed]]\nname = \"wall\"\nfrom = [0, 0]\nto = [0, 3]\ncomponents = { friction = MU }";
+    let as_strip = changed(&changed(WALL, body, strip), "\"rigid-force\"\nrigid", "\"reaction\"\nof");
+    for friction in [0.0, 0.3] {
+        let found = thrust(&changed(&as_strip, "MU", &format!("{friction:?}")), 1, "reaction").map(f64::abs);
+        // -2.2 and -2.1 %.
+        assert!((found[0] / active(friction) - 1.0).abs() < 0.03, "{friction}: {found:?}");
+        assert!((found[1] / found[0] - friction).abs() < 1e-9, "{friction}: {found:?}");
+    }
 }
 
 #[test]
@@ -214,7 +229,7 @@ fn a_rigid_wall_that_is_pushed_into_sand_has_rankines_passive_thrust() {
     ] {
         pushed = changed(&pushed, active, passive);
     }
-    let [found, _] = thrust(&pushed, 1);
+    let [found, _] = thrust(&pushed, 1, "rigid-force");
     let passive = 0.5 * 18.0e3 * 9.0 * 3.0;
     // +.38 %: it has heaved.
     assert!((found / passive - 1.0).abs() < 0.01, "{found} for {passive}");
@@ -317,4 +332,15 @@ fn a_rigid_body_that_a_stage_places_falls_from_then_on() {
         let fallen = -0.5 * 9.81 * (t - 0.2_f64).powi(2);
         assert!((at(&found, "plate-y", t) / fallen - 1.0).abs() < 1e-12, "t = {t}: {}", at(&found, "plate-y", t));
     }
+
+/// A rough punch in plastic failure: in these steps it had stopped at .44 of the way, as nothing led to an equilibrium.
+/// With ten times as many steps it came to 6.09 c.
+#[test]
+fn a_rough_punch_on_clay_goes_the_whole_way() {
+    let scratch = Scratch::new();
+    let case = shipped("validation/rigid_punch.toml");
+    let set = ["--set", "rigid.0.friction=1.0", "--set", "check=[]"];
+    scratch.mpirun(1, &[&[case.to_str().unwrap(), "-q", "-o", "out"][..], &set].concat()).expect(0);
+    let pressure = at(&history(&scratch.path("out")), "p_over_c-y", 1.0);
+    assert!((pressure / 6.09 - 1.0).abs() < 0.005, "{pressure}");
 }

@@ -130,10 +130,12 @@ impl<const D: usize> Grip<D> {
         }
     }
 
-    /// The status that the last step's displacement makes likely; `before`: what the law started from.
+    /// The status that the last step's displacement makes likely; `before`: what the law started from. What is on the
+    /// material as the step begins is expected to stay on it, even if nothing presses there yet: initial stress does
+    /// from the first step on, and soil that yields could not stand if all points let go of it.
     pub fn recall(&mut self, trial: &Vector<D>, before: &Vector<D>) {
         let [pressed, presses] = [before, trial].map(|traction| self.contact.inward.dot(traction));
-        if self.contact.law.lifts && pressed <= 0.0 && presses < 0.0 {
+        if self.contact.law.lifts && self.open_before && presses < 0.0 {
             self.status = Status::Open;
             return;
         }
