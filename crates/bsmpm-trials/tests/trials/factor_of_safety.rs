@@ -139,8 +139,8 @@ fn a_slope_that_is_built_and_then_weakened_has_the_same_factor() {
 }
 
 /// The first pit of `cases/excavation.toml` is a vertical cut, 4 m high, which stands up to gamma H/c = 3.7603 to
-/// 3.7859 (Pastor et al., 2000). In cells of 1 m its factor is 2.99, of .5 m 2.83, and 2.68 where these lead to; that of
-/// the second one is 1.88, where blocks allow 1.884.
+/// 3.7859 (Pastor et al., 2000). In cells of 1 m its factor is 2.99, of .5 m 2.83, and 2.68 where these lead to; that
+/// of the second one is 1.88, where blocks allow 1.884.
 #[test]
 fn a_pit_has_the_factor_of_a_vertical_cut_and_then_no_more_than_blocks_allow() {
     let of = |cell: &str, stage: &str, range: (f64, f64)| {

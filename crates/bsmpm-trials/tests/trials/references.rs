@@ -72,8 +72,8 @@ fn a_pipe_that_is_pulled_out_of_clay_carries_less_than_blocks_above_it() {
 }
 
 /// A smooth plate, B/4 thick, its upper side 2 B below the surface: blocks with four nodes to its width allow 3.75, and
-/// a rough one carries 2.56 ln(2 H/B) = 3.55 c B by lower bounds (Merifield, Sloan and Yu, 2001). Cells of B/8 and B/16,
-/// two and four in its thickness, gave 4.30 and 4.00: too much by 15 and 7 % of what blocks allow.
+/// a rough one carries 2.56 ln(2 H/B) = 3.55 c B by lower bounds (Merifield, Sloan and Yu, 2001). Cells of B/8 and
+/// B/16, two and four in its thickness, gave 4.30 and 4.00: too much by 15 and 7 % of what blocks allow.
 #[test]
 fn an_anchor_plate_carries_less_in_smaller_cells_towards_what_blocks_allow() {
     let hole = "body.0.subtract=[{ box = { lower = [0.0, 1.75], upper = [0.5, 2.0] } }]";

@@ -81,8 +81,8 @@ fn pressed(stage: &str) -> String {
     )
 }
 
-/// Slowly it carries (1 + sin phi)/(1 - sin phi) times 100 kPa; so fast that it stays as it has drained, by the law that
-/// a stage puts in its place, 2 c more than that, on the stress that was there.
+/// Slowly it carries (1 + sin phi)/(1 - sin phi) times 100 kPa; so fast that it stays as it has drained, by the law
+/// that a stage puts in its place, 2 c more than that, on the stress that was there.
 #[test]
 fn clay_that_has_drained_fails_at_once_by_its_strength_without_drainage() {
     let run = |stage: &str| {

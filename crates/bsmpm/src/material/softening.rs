@@ -149,8 +149,9 @@ impl SofteningMohrCoulomb {
     }
 
     /// The growth of κ that the return with its own strength makes: by secants between bounds, by halves where these
-    /// leave them. A strength by the rate follows the logarithm of the growth, which may be any of a dozen decades: there
-    /// by halves of the logarithm, until bounds are so near that it looks straight. Not a number where that finds none.
+    /// leave them. A strength by the rate follows the logarithm of the growth, which may be any of a dozen decades:
+    /// there by halves of the logarithm, until bounds are so near that it looks straight. Not a number where that finds
+    /// none.
     #[inline(always)]
     fn solve<R: Real>(&self, trial: [R; 3], kappa: R) -> R {
         let none = kappa.like(0.0);

@@ -111,8 +111,8 @@ fn tangent_is_the_derivative() {
     assert!(seen.len() == 5 && seen.values().all(|&count| count > 1_000) && worst < 1e-6, "{seen:?}, {worst}");
 }
 
-/// Steps as they come on a surface that a rate has hardened: trials anywhere between the strength at rest and what it is
-/// twelve decades above the reference, so that the plastic strain may be of any size.
+/// Steps as they come on a surface that a rate has hardened: trials anywhere between the strength at rest and what it
+/// is twelve decades above the reference, so that the plastic strain may be of any size.
 #[test]
 fn a_strength_by_the_rate_is_found_whatever_the_plastic_strain() {
     let (young, poisson, peak, per_decade) = (1e3, 0.49, 3.0, 0.1);
