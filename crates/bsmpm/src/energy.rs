@@ -51,12 +51,12 @@ use crate::boundary::{Surface, load};
 use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};
 use crate::kinematics::{Gradient, Kinematics};
-use crate::material::Response;
 use crate::model::Model;
 use crate::parallel::{Halo, over_layers};
 use crate::points::Points;
 use crate::solve::found::Found;
 use crate::step::adjoint::Pressures;
+use crate::step::commit::Answer;
 use crate::step::problem::Problem;
 use crate::tensor::Vector;
 use crate::water::{carried, work};
@@ -166,7 +166,7 @@ impl Draft {
     /// [`Budget`] is made of.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        (found, responses): (&Found<K, D>, &[Response]),
+        (found, answers): (&Found<K, D>, &[Answer]),
         (t, dt): (f64, f64),
     ) -> Self {
         let Problem { model, nodes, grips, points, halo, .. } = *problem;
@@ -200,13 +200,13 @@ impl Draft {
         flows.penalty = strips.given;
         flows.penalty -= &strips.taken;
         flows.penalty -= &strips.rubbed;
-        let volumes = || responses.iter().zip(&points.volume);
-        flows.plastic = volumes().map(|(response, volume)| volume * response.dissipation()).collect();
+        let volumes = || answers.iter().zip(&points.volume);
+        flows.plastic = volumes().map(|(answer, volume)| volume * answer.dissipation).collect();
         if !model.damping.is_empty() {
             let damped = |p: usize| found.trial.viscous(model, points, p).map_or(0.0, |viscous| viscous.dissipation);
             flows.plastic.extend((0..points.len()).map(|p| points.volume[p] * damped(p)));
         }
-        let mut elastic: Exact = volumes().map(|(response, volume)| volume * response.elastic_energy()).collect();
+        let mut elastic: Exact = volumes().map(|(answer, volume)| volume * answer.elastic_energy).collect();
         if model.balances_energy {
             flows.integration -= &flows.plastic;
         }
@@ -220,7 +220,7 @@ impl Draft {
         let dry = nodes.pores.is_some().then(|| points.mass.to_vec());
         let mut draft = Self { flows, elastic, dry, rubbed, t, dt };
         if model.balances_energy {
-            draft.add_losses(problem, (found, responses));
+            draft.add_losses(problem, (found, answers));
         }
         draft
     }
@@ -229,13 +229,13 @@ impl Draft {
     fn add_losses<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
-        (found, responses): (&Found<K, D>, &[Response]),
+        (found, answers): (&Found<K, D>, &[Answer]),
     ) {
         let Problem { model, shape, nodes, points, .. } = *problem;
         let (flows, u) = (&mut self.flows, &found.u[..]);
         let (pressures, volume) = (Pressures::of(problem, &found.trial), problem.volume());
         let work_of = |p: usize, grad: K::Gradient| {
-            let tau = pressures.acting::<K, D>(p, volume[p], responses[p].tau());
+            let tau = pressures.acting::<K, D>(p, volume[p], answers[p].tau);
             let tau = found.trial.pressed(p, found.trial.damped(model, points, p, tau));
             volume[p] * K::flux(&tau, &found.trial.dF(p)).dot(&grad)
         };

@@ -182,9 +182,9 @@ fn advance<K: Kinematics<D>, const D: usize>(
     let velocity_of = |c: usize| nodes.inertia.as_ref().map_or(0.0, |inertia| inertia.velocity(c, found.u[c]));
     let velocity: Vec<f64> = layer.map(velocity_of).collect();
     let velocity = velocity.chunks_exact(D).map(Vector::from_column_slice).collect();
-    let responses = commit::responses(alone, &found.trial, &column, &tied)?;
+    let answers = commit::answers(alone, &found.trial, &column, &tied)?;
     let across: Vec<f64> = column.x.iter().map(|x| x[face.axis]).collect();
-    commit::commit(alone, (&shape, &nodes), (found, &responses), &mut column, &tied);
+    commit::commit(alone, (&shape, &nodes), (found, answers), &mut column, &tied);
     // Nothing differs across the column: its material stays before the face.
     column.x.iter_mut().zip(across).for_each(|(x, across)| x[face.axis] = across);
     column.sort_by_cell(&alone.grid);

@@ -69,15 +69,15 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
     let mut surface = Surface { traction, position, anchors, bodies, ..points.surface.clone() };
-    let responses = commit::responses(model, &found.trial, points, halo)?;
+    let (answers, state) = commit::answers(model, &found.trial, points, halo)?;
     let accounts = model.balances_energy || model.regime == Regime::Dynamic;
-    let draft = accounts.then(|| Draft::of(&problem, (&found, &responses), (t, dt)));
+    let draft = accounts.then(|| Draft::of(&problem, (&found, &answers), (t, dt)));
     if halo.rejects() {
         return Err(StepError::Interrupted);
     }
     // (10), (11)
     let Committed { u, advance, smoothed, content } =
-        commit::commit(model, (&shape, &nodes), (found, &responses), points, halo);
+        commit::commit(model, (&shape, &nodes), (found, (answers, state)), points, halo);
     *guess = u;
     if let Some(extent) = nodes.rigid.extent() {
         points.extent = Some(extent.to_vec());

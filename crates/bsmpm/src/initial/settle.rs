@@ -94,17 +94,15 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
             solve::contact::find(sought, &start.shape, &mut start.nodes, around, &at_rest, (halo, solver), &mut counts);
         match found {
             Ok(found) => {
-                let responses = commit::responses(model, &found.trial, points, halo)?;
+                let (answers, state) = commit::answers(model, &found.trial, points, halo)?;
                 let (_, traction) =
                     start.grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
                 points.surface.traction = traction;
-                for (p, response) in responses.iter().enumerate() {
-                    points.b_e.set(p, response.b_e());
-                    points.sigma.set(p, response.tau());
-                    if let Some(state) = &mut points.state {
-                        response.advance(state.of_point_mut(p));
-                    }
+                for (p, answer) in answers.iter().enumerate() {
+                    points.b_e.set(p, answer.b_e);
+                    points.sigma.set(p, answer.tau);
                 }
+                points.state = state;
                 (left, part, rounds) = (next, 2.0 * part, rounds + 1);
             }
             Err(error) if error.is_final() || part.min(left) <= LEAST => return Err(error),

@@ -3,6 +3,7 @@
 use super::packed::{Components, Packed};
 use crate::tensor::Symmetric;
 use nalgebra::SMatrix;
+use rayon::prelude::*;
 
 /// What a number of a column is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +62,11 @@ impl Rows {
     #[inline]
     pub fn of_point(&self, p: usize) -> &[f64] {
         &self.numbers[p * self.width..][..self.width]
+    }
+
+    /// All rows in order, to be changed; a row has at least one number.
+    pub fn par_rows_mut(&mut self) -> impl IndexedParallelIterator<Item = &mut [f64]> {
+        self.numbers.par_chunks_exact_mut(self.width)
     }
 
     /// Row `p`, to be changed.

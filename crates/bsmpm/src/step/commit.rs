@@ -13,7 +13,7 @@ use crate::kinematics::Kinematics;
 use crate::material::{Response, Separation};
 use crate::model::Model;
 use crate::parallel::{Halo, agreed};
-use crate::points::Points;
+use crate::points::{Points, Rows};
 use crate::solve::found::Found;
 use crate::stabilisation::Stabilisation;
 use crate::step::inertia::Inertia;
@@ -21,7 +21,7 @@ use crate::step::mass::MassMatrix;
 use crate::step::nodes::Nodes;
 use crate::step::smooth;
 use crate::step::trial::Trial;
-use crate::tensor::Vector;
+use crate::tensor::{Symmetric, Vector};
 use crate::water::saved;
 use rayon::prelude::*;
 
@@ -70,27 +70,69 @@ pub struct Committed {
     pub content: f64,
 }
 
-/// The constitution's answers to the converged step. Fails on all ranks if it refuses a state that it answered during
-/// the iteration.
-pub fn responses<K: Kinematics<D>, const D: usize>(
+/// What is kept of the constitution's answer to the converged step at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Answer {
+    /// Pa  Kirchhoff stress
+    pub tau: Symmetric,
+    /// -  elastic left Cauchy-Green tensor
+    pub b_e: Symmetric,
+    /// -  equivalent plastic strain of the step
+    pub plastic_increment: f64,
+    /// -  that is open, as a logarithm of volume
+    pub gap: f64,
+    /// J/m3  plastic dissipation, of the volume at the start
+    pub dissipation: f64,
+    /// J/m3  elastic energy, of the volume at the start
+    pub elastic_energy: f64,
+    flow: smooth::PlasticFlow,
+}
+
+impl Answer {
+    /// Of a response of a point whose `gap` was open before.
+    fn of(response: &Response, gap: f64) -> Self {
+        Self {
+            tau: response.tau(),
+            b_e: response.b_e(),
+            plastic_increment: response.plastic_increment(),
+            gap: response.gap(),
+            dissipation: response.dissipation(),
+            elastic_energy: response.elastic_energy(),
+            flow: smooth::PlasticFlow::of(response, gap),
+        }
+    }
+}
+
+/// The constitution's answers to the converged step, and the laws' state after it, if they have any. Fails on all ranks
+/// if it refuses a state that it answered during the iteration.
+pub fn answers<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     trial: &Trial<K, D>,
     points: &Points<D>,
     halo: &dyn Halo,
-) -> Result<Vec<Response>, StepError> {
+) -> Result<(Vec<Answer>, Option<Rows>), StepError> {
+    let mut state = points.state.clone();
+    let respond = |p: usize| trial.respond(model, points, p);
+    let kept = |p: usize, response: &Response| Answer::of(response, points.gap_of(p));
     // Collected as they come, and only then taken apart: one array, whatever the number of threads.
-    let answers: Vec<_> = (0..points.len()).into_par_iter().map(|p| trial.respond(model, points, p)).collect();
+    let answers: Vec<_> = match &mut state {
+        Some(state) => {
+            let after = |(p, row)| respond(p).map(|response| (response.advance(row), kept(p, &response)).1);
+            state.par_rows_mut().enumerate().map(after).collect()
+        }
+        None => (0..points.len()).into_par_iter().map(|p| respond(p).map(|response| kept(p, &response))).collect(),
+    };
     let failed = |(p, source)| StepError::Material { id: points.id[p], source };
-    let responses: Result<Vec<_>, _> =
+    let answers: Result<Vec<_>, _> =
         answers.into_iter().enumerate().map(|(p, answer)| answer.map_err(|source| failed((p, source)))).collect();
-    agreed(halo, responses, StepError::OtherRank)
+    Ok((agreed(halo, answers, StepError::OtherRank)?, state))
 }
 
-/// Saves the converged step, which the constitution has answered so, into the points.
+/// Saves the converged step, which the constitution has answered so, with the laws' state after it, into the points.
 pub fn commit<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     (shape, nodes): (&Shape<D>, &Nodes<D>),
-    (found, responses): (Found<K, D>, &[Response]),
+    (found, (answers, state)): (Found<K, D>, (Vec<Answer>, Option<Rows>)),
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) -> Committed {
@@ -108,16 +150,14 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     if model.stabilisation.averages() {
         points.dilation = Some((0..points.len()).map(|p| trial.dilation(model, points, p)).collect());
     }
-    if let Some(state) = &mut points.state {
-        responses.iter().enumerate().for_each(|(p, response)| response.advance(state.of_point_mut(p)));
-    }
-    for (p, response) in responses.iter().enumerate() {
+    points.state = state;
+    for (p, answer) in answers.iter().enumerate() {
         let F = trial.dF(p) * points.F.at(p);
         points.F.set(p, F);
-        let tau = trial.damped(model, points, p, response.tau());
+        let tau = trial.damped(model, points, p, answer.tau);
         points.sigma.set(p, tau.scaled(1.0 / (F.determinant() * points.dilation_of(p))));
-        points.b_e.set(p, response.b_e());
-        points.eps_p[p] += response.plastic_increment();
+        points.b_e.set(p, answer.b_e);
+        points.eps_p[p] += answer.plastic_increment;
     }
     let content = nodes.pores.as_ref().map_or(0.0, |pores| saved::save(model, pores, &trial, &pressures, points, halo));
     let smoothed = match model.stabilisation {
@@ -126,22 +166,20 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
             1.0
         }
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
-            let flow_of = |(p, response)| smooth::PlasticFlow::of(response, points.gap_of(p));
-            let flow: Vec<smooth::PlasticFlow> = responses.iter().enumerate().map(flow_of).collect();
+            let flow: Vec<smooth::PlasticFlow> = answers.iter().map(|answer| answer.flow).collect();
             smooth::filter_dilation(model, (shape, nodes), points, &flow, halo)
         }
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
     };
-    points.gap = gaps(model, points, responses);
+    points.gap = gaps(model, points, &answers);
     Committed { u, advance: advance[0], smoothed, content }
 }
 
 /// Gap of every point after the step, if some material closes its gaps.
-fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, responses: &[Response]) -> Option<Vec<f64>> {
+fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, answers: &[Answer]) -> Option<Vec<f64>> {
     let closes: Vec<bool> = model.materials.iter().map(|law| law.separation() == Separation::Closing).collect();
-    let gap =
-        |(response, material): (&Response, &u16)| if closes[usize::from(*material)] { response.gap() } else { 0.0 };
-    closes.contains(&true).then(|| responses.iter().zip(&points.material).map(gap).collect())
+    let gap = |(answer, material): (&Answer, &u16)| if closes[usize::from(*material)] { answer.gap } else { 0.0 };
+    closes.contains(&true).then(|| answers.iter().zip(&points.material).map(gap).collect())
 }
 
 /// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)).
