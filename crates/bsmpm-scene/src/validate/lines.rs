@@ -43,6 +43,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     if case.grid.dims() == 2 {
         interfaces(case, &mut found); // of a solid see `solid`
         ends::segments(case, &mut found);
+        ends::corners(case, &mut found);
     }
     ends::plates(case, &mut found);
     for (table, number, message) in std::mem::take(&mut found.narrow) {

@@ -73,7 +73,7 @@ fn a_pipe_that_is_pulled_out_of_clay_carries_less_than_blocks_above_it() {
 
 /// A smooth plate, B/4 thick, its upper side 2 B below the surface: blocks with four nodes to its width allow 3.75, and
 /// a rough one carries 2.56 ln(2 H/B) = 3.55 c B by lower bounds (Merifield, Sloan and Yu, 2001). Cells of B/8 and
-/// B/16, two and four in its thickness, gave 4.30 and 4.00: too much by 15 and 7 % of what blocks allow.
+/// B/16, two and four in its thickness, gave 4.06 and 3.85: too much by 8 and 3 % of what blocks allow.
 #[test]
 fn an_anchor_plate_carries_less_in_smaller_cells_towards_what_blocks_allow() {
     let hole = "body.0.subtract=[{ box = { lower = [0.0, 1.75], upper = [0.5, 2.0] } }]";
@@ -86,7 +86,7 @@ fn an_anchor_plate_carries_less_in_smaller_cells_towards_what_blocks_allow() {
     let ([coarse, fine], rough, blocks) = ([0.125, 0.0625].map(of), 2.56 * 4_f64.ln(), plate(2.0, 0.25, 4));
     println!("{coarse}, {fine}; blocks {blocks}");
     assert!(rough < blocks && rough < fine, "{fine}, {rough}, {blocks}");
-    assert!(coarse < 1.17 * blocks && fine - blocks < 0.55 * (coarse - blocks), "{coarse} {fine}, {blocks}");
+    assert!(coarse < 1.09 * blocks && fine - blocks < 0.55 * (coarse - blocks), "{coarse} {fine}, {blocks}");
 }
 
 /// It rolls with 2/3 g sin(theta), and with little friction slips with g (sin(theta) - mu cos(theta)). Cells of a

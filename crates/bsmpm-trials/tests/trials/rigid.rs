@@ -334,14 +334,17 @@ fn a_rigid_body_that_a_stage_places_falls_from_then_on() {
     }
 }
 
-/// A rough punch in plastic failure: in these steps it had stopped at .44 of the way, as nothing led to an equilibrium.
-/// With ten times as many steps it came to 6.09 c.
+/// A rough punch in plastic failure, with and without a C0 line at its corner: in these steps it had stopped at .44 of
+/// the way without, as nothing led to an equilibrium, and had come to 6.09 c with ten times as many.
 #[test]
 fn a_rough_punch_on_clay_goes_the_whole_way() {
     let scratch = Scratch::new();
     let case = shipped("validation/rigid_punch.toml");
-    let set = ["--set", "rigid.0.friction=1.0", "--set", "check=[]"];
-    scratch.mpirun(1, &[&[case.to_str().unwrap(), "-q", "-o", "out"][..], &set].concat()).expect(0);
-    let pressure = at(&history(&scratch.path("out")), "p_over_c-y", 1.0);
-    assert!((pressure / 6.09 - 1.0).abs() < 0.005, "{pressure}");
+    for (lines, expected) in [("none", 6.09), ("automatic", 5.46)] {
+        let lines = format!("grid.c0_lines={lines}");
+        let set = ["--set", "rigid.0.friction=1.0", "--set", "check=[]", "--set", &lines];
+        scratch.mpirun(1, &[&[case.to_str().unwrap(), "-q", "--force", "-o", "out"][..], &set].concat()).expect(0);
+        let pressure = at(&history(&scratch.path("out")), "p_over_c-y", 1.0);
+        assert!((pressure / expected - 1.0).abs() < 0.005, "{pressure} for {expected}");
+    }
 }

@@ -1,7 +1,7 @@
-//! C0 lines at the ends of strips and loaded segments, and at the edges of plates.
+//! C0 lines at the ends of strips and loaded segments, at the edges of plates, and at corners of rigid bodies.
 
 use super::{BESIDE, BEYOND, FoundLine, NAMES, grid_line};
-use crate::case::{Case, LoadedLine, MotionPath, Site};
+use crate::case::{Case, LoadedLine, MotionPath, Rigid, RigidShape, Site};
 use crate::validate::place::is_in;
 
 /// A strip or a loaded segment.
@@ -98,6 +98,49 @@ pub(super) fn segments(case: &Case, found: &mut FoundLine) {
             end(case, &segment, (along, 1 - along), (at, at[along] - other[along]), found);
         }
         wall(case, &segment, 1 - along, found);
+    }
+}
+
+/// Corners at which edges of rigid bodies along an axis end that soil lies at, and goes on beyond: of bodies that stay
+/// at the grid lines there.
+pub(super) fn corners(case: &Case, found: &mut FoundLine) {
+    for rigid in case.rigid.iter().filter(|rigid| rigid.rotation.is_empty() && !rigid.free[2]) {
+        let RigidShape::Polygon(corners) = &rigid.shape else { continue };
+        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            let Some(along) = [0, 1].into_iter().find(|axis| from[1 - axis] == to[1 - axis]) else { continue };
+            let moves = rigid.free[along] || rigid.path.rows.iter().any(|(_, moved)| moved[along] != 0.0);
+            let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
+            if !moves && has_material(case, flat(middle), 1 - along) {
+                corner(case, rigid, along, (*from, from[along] - to[along]), found);
+                corner(case, rigid, along, (*to, to[along] - from[along]), found);
+            }
+        }
+    }
+}
+
+/// The line through a corner; `outward` leads along the edge that ends there.
+fn corner(case: &Case, rigid: &Rigid, along: usize, (at, outward): ([f64; 2], f64), found: &mut FoundLine) {
+    let (axis, mut beyond) = (&case.grid.axes[along], at);
+    beyond[along] += outward.signum() * BEYOND * axis.shortest();
+    if !has_material(case, flat(beyond), 1 - along) {
+        return;
+    }
+    let name = &rigid.name;
+    match grid_line(case, along, at[along] - axis.lower()) {
+        Some(line) if line == 0 || line == axis.cells() => {}
+        Some(line) => {
+            let reason = format!("a corner of rigid `{name}`, where strains are singular");
+            found.lines.entry((along, line)).or_insert(reason);
+        }
+        None => {
+            let told = format!(
+                "rigid `{name}`: its corner at {} = {} lies inside a cell: it pushes what the splines reach, up to a cell more \
+                 than its width, and its force is high by as much (on clay by 19 % in place of 7, eight cells wide); put a \
+                 grid line there, by grid.cell or [grid.knots]",
+                NAMES[along], at[along]
+            );
+            found.doubts.entry(format!("rigid {name}")).or_insert(told);
+        }
     }
 }
 
