@@ -160,3 +160,31 @@ fn where_water_fills_ground_that_moves_through_lines_they_are_told_of() {
     assert_eq!(found, [vec![], vec![]]);
     assert!(warnings.iter().any(|told| told.contains("where water flows, without a line there")), "{warnings:?}");
 }
+
+/// A line where an edge that soil lies at ends and the surface goes on, of a body that stays over it; inside a cell a
+/// warning.
+#[test]
+fn rigid_bodies_have_lines_at_the_corners_that_stay() {
+    let one = LAYERS.replace("\"stiff\"\n    box", "\"soft\"\n    box");
+    let punch = |left: f64, more: &str| {
+        format!(
+            "{one}[[rigid]]\nname = \"punch\"\npolygon = [[{left}, 4], [5, 4], [5, 5], [{left}, 5]]\n{more}\n\
+             [[history]]\nquantity = \"rigid-force\"\nrigid = \"punch\"\n"
+        )
+    };
+    let down = "displacement = [0.0, -0.1]";
+    let (found, notes, _) = lines(&punch(3.0, down));
+    assert_eq!(found, [vec![6, 10], vec![]], "{notes:?}");
+    assert!(notes[0].contains("a corner of rigid `punch`"), "{notes:?}");
+    // At the end of the ground nothing goes on.
+    assert_eq!(lines(&punch(-1.0, down)).0, [vec![10], vec![]]);
+    let (found, _, warnings) = lines(&punch(3.2, down));
+    assert_eq!(found, [vec![10], vec![]]);
+    let told =
+        |warnings: &[String]| warnings.iter().any(|warning| warning.contains("its corner at x = 3.2 lies inside"));
+    assert!(told(&warnings), "{warnings:?}");
+    for moved in ["displacement = [0.1, 0.0]", "free = [\"x\", \"y\", \"rotation\"]\nforce = [0, -10]"] {
+        let (found, _, warnings) = lines(&punch(3.2, moved));
+        assert!(found == [vec![], vec![]] && !told(&warnings), "{found:?} {warnings:?}");
+    }
+}
