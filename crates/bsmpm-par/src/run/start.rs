@@ -64,10 +64,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         );
         if unbalance > UNBALANCED {
             let sudden = self.case.sudden_loads();
-            let growing = format!("{} in full from the start has no part in it: give a ramp", sudden.join(", "));
+            let growing =
+                format!("{}: what acts in full from time 0 has no part in it: give a ramp", sudden.join(", "));
             // Linear elastic equilibrium is lost by nothing but yield.
             let advice = match &self.case.initial {
-                _ if !sudden.is_empty() => &growing,
+                Some(Initial::AtRest(_)) if !sudden.is_empty() => &growing,
                 _ if !self.case.rigid.is_empty() => {
                     "rigid bodies have no part in it: where they hold soil let gravity grow over a ramp, without [initial]"
                 }

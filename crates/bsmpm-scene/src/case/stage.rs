@@ -110,18 +110,18 @@ impl Case {
 
     /// What the file calls the loads that act in full from the start.
     pub fn sudden_loads(&self) -> Vec<String> {
+        let tractions =
+            self.tractions.iter().enumerate().map(|(k, of)| (format!("traction.{k}"), of.ramp, &of.amplitude));
+        let forces = self.point_loads.iter().enumerate();
+        let forces = forces.map(|(k, of)| (format!("point_load.{k}"), of.ramp, &of.amplitude));
         let is_sudden = |ramp: f64, amplitude: &[(f64, f64)]| match amplitude.first() {
             Some((t, share)) => *t == 0.0 && *share != 0.0,
             None => ramp == 0.0,
         };
-        let tractions =
-            self.tractions.iter().map(|load| ("traction", is_sudden(load.ramp, &load.amplitude))).enumerate();
-        let forces =
-            self.point_loads.iter().map(|load| ("point_load", is_sudden(load.ramp, &load.amplitude))).enumerate();
-        let all = tractions.chain(forces).enumerate();
         let acts = |load: usize| self.acts_since(Acting::Load(load), 0.0).is_some();
-        let sudden = all.filter(|(load, (_, (_, is_sudden)))| *is_sudden && acts(*load));
-        sudden.map(|(_, (number, (name, _)))| format!("{name}.{number}")).collect()
+        let all = tractions.chain(forces).enumerate();
+        let sudden = all.filter(|(load, (_, ramp, amplitude))| is_sudden(*ramp, amplitude) && acts(*load));
+        sudden.map(|(_, (name, ..))| name).collect()
     }
 
     /// Whether bodies that are there as long as a strip or load acts satisfy `holds`.

@@ -165,8 +165,7 @@ impl SofteningMohrCoulomb {
             let made = self.growth(trial, self.pyramid(kappa + growth, growth).project(trial).0);
             let gap = made - growth;
             // Where strength falls faster than stress does, the bounds meet before the two agree to all digits.
-            let bounded = high.below(none.like(f64::INFINITY));
-            let met = bounded & (high - low).at_most(high * 4e-16);
+            let met = high.below(none.like(f64::INFINITY)) & (high - low).at_most(high * 4e-16);
             let agrees = gap.magnitude().at_most(made * AGREED[0] + round_off) | met;
             found = R::choose(sought & agrees, growth, found);
             sought = sought & !agrees;
@@ -175,18 +174,19 @@ impl SofteningMohrCoulomb {
             }
             low = R::choose(none.below(gap), growth, low);
             high = R::choose(gap.below(none), growth, high);
+            let bounded = high.below(none.like(f64::INFINITY));
             let slope = (gap - last_gap) / (growth - last_growth);
             let secant = growth - gap / slope;
             let mut middle = (low + high) * 0.5;
             let mut inside = low.below(secant) & secant.below(high);
             if let Some(slowest) = self.slowest() {
-                let (slowest, bounded) = (none.like(slowest), high.below(none.like(f64::INFINITY)));
+                let slowest = none.like(slowest);
                 let is_far = bounded & slowest.below(high) & (low * STRAIGHT).below(high);
                 let by_logarithm = R::choose(low.below(slowest), slowest, (low * high).root());
                 middle = R::choose(is_far, by_logarithm, middle);
                 inside = inside & !is_far;
             }
-            let middle = R::choose(high.below(none.like(f64::INFINITY)), middle, made);
+            let middle = R::choose(bounded, middle, made);
             (last_growth, last_gap) = (growth, gap);
             growth = R::choose(inside, secant, middle);
         }
