@@ -32,6 +32,9 @@ impl Exact {
     /// Adds a float.
     #[inline]
     pub fn add(&mut self, number: f64) {
+        if number == 0.0 {
+            return;
+        }
         let bits = number.to_bits();
         let exponent = (bits >> 52) as u32 & 0x7ff;
         if exponent == 0x7ff {

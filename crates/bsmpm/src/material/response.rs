@@ -57,6 +57,7 @@ impl Response {
     /// et al. (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a step, so that the
     /// tangent keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what gapes is
     /// filled.
+    #[inline]
     pub fn gap(&self) -> f64 {
         if self.branch() != Branch::Apex {
             return 0.0;
@@ -66,7 +67,11 @@ impl Response {
     }
 
     /// The equivalent plastic strain of this return: `Δεᵖ = √(2/3) |dev(ε_trial - εᵉ)|`, zero if elastic.
+    #[inline]
     pub fn plastic_increment(&self) -> f64 {
+        if self.branch() == Branch::Elastic {
+            return 0.0;
+        }
         let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);
         let flow = [eps[0] - eps_e[0], eps[1] - eps_e[1], eps[2] - eps_e[2]];
         let (a, b, c) = (flow[0] - flow[1], flow[1] - flow[2], flow[2] - flow[0]);
@@ -75,12 +80,17 @@ impl Response {
     }
 
     /// Plastic dissipation of this return per reference volume, J/m3: `τ : (ε_trial - εᵉ)`, zero if elastic.
+    #[inline]
     pub fn dissipation(&self) -> f64 {
+        if self.branch() == Branch::Elastic {
+            return 0.0;
+        }
         let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);
         (0..3).map(|k| self.tau[k] * (eps[k] - eps_e[k])).sum()
     }
 
     /// Elastic energy per reference volume after the return, J/m3: `½ λ tr(εᵉ)² + μ εᵉ : εᵉ` where it is linear.
+    #[inline]
     pub fn elastic_energy(&self) -> f64 {
         self.flowed.elastic_energy(self.moduli, self.principal_eps_e())
     }
@@ -98,6 +108,7 @@ impl Response {
     }
 
     /// Principal elastic Hencky strain after the return, descending: `εᵉ = D⁻¹ τ`.
+    #[inline]
     pub fn principal_eps_e(&self) -> [f64; 3] {
         if self.branch() == Branch::Elastic {
             self.trial.eps
