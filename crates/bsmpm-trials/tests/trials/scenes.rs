@@ -330,3 +330,50 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
     std::fs::remove_file(named.path("quake.csv")).unwrap();
     named.mpirun(2, &["case.toml", "-q", "--force"]).expect(66).says_once("quake.csv: ");
 }
+
+/// A bar of 2 m by .5 m that its left end holds and its right end bends, by a stress that grows with depth.
+const BENT: &str = r#"geometry = "plane-strain"
+[analysis]
+type = "quasi-static"
+steps = 1
+[grid]
+lower = [0.0, 0.0]
+upper = [2.5, 1.0]
+cell = 0.0625
+order = "quadratic"
+[material.steel]
+model = "hencky"
+young = "1 GPa"
+poisson = 0.3
+[[body]]
+material = "steel"
+box = { lower = [0.0, 0.25], upper = [2.0, 0.75] }
+points_per_cell = 3
+[boundary]
+left = "fixed"
+[[traction]]
+from = [2.0, 0.25]
+to = [2.0, 0.75]
+stress = { value = ["-300 Pa", "40 Pa"], at_y = 0.75, per_metre = ["800 Pa/m", "320 Pa/m"] }
+[[history]]
+quantity = "reaction"
+face = "left"
+[[history]]
+quantity = "section-forces"
+from = [1.0, 0.25]
+to = [1.0, 0.75]
+"#;
+
+#[test]
+fn a_stress_by_depth_acts_on_a_surface_with_its_force_and_moment() {
+    let scratch = Scratch::with_case(BENT);
+    scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
+    let rows = history(&scratch.path("case.out"));
+    // Along x -300 to +100 Pa over .5 m, along y 40 to 200: -50 and 60 N/m in the middle, and 400 (.5)^2/12 N of moment.
+    let off =
+        [("reaction-x", 50.0), ("reaction-y", -60.0)].map(|(name, expected)| at(&rows, name, 1.0) / expected - 1.0);
+    let bent = [("n", -50.0), ("q", 60.0), ("m", -60.0 - 400.0 * 0.25 / 12.0)];
+    let inside = bent.map(|(name, expected)| at(&rows, &format!("section-forces-{name}"), 1.0) / expected - 1.0);
+    println!("reactions off by {off:?}, section forces by {inside:?}");
+    assert!(off.iter().all(|off| off.abs() < 1e-8) && inside.iter().all(|off| off.abs() < 1e-3), "{off:?} {inside:?}");
+}
