@@ -69,7 +69,7 @@ fn a_block_on_rock_has_the_factor_of_its_friction_inclined_to_the_cells_or_not()
     }
 }
 
-/// 1.584 and 1.584 as the toe is held; .971 as it is not. A wall that goes 10 mm away in a stage and is to go on leaves
+/// 1.584 and 1.584 as the toe is held; .969 as it is not. A wall that goes 10 mm away in a stage and is to go on leaves
 /// 1.582, where it stops for good, too; there is more in what moves than in what is held.
 #[test]
 fn a_slope_held_by_a_wall_has_the_factor_of_one_held_by_a_face() {
