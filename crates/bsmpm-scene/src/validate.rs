@@ -85,13 +85,13 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let footing = strip::footing(record, around, report);
     let prescribed = strip::prescribed(record, around, report);
     let flow = flow::read(record, materials.as_deref(), around, report);
-    let rigid = rigid::read_all(record, (around, regime), factor, report);
+    let mut rigid = rigid::read_all(record, (around, regime), factor, report);
     let mut tractions = load::tractions(record, around, report);
     let mut point_loads = load::point_loads(record, around, report);
     let mut initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
     if let Some(end) = end.filter(|_| load::is_unloaded(record)) {
         initial = None;
-        load::grow((gravity.as_mut(), &mut tractions, &mut point_loads), end, report);
+        load::grow((gravity.as_mut(), &mut tractions, &mut point_loads, &mut rigid), end, report);
     }
     let stabilisation = stabilisation(record);
     let solver = solver::read(record, regime, (grid.as_ref(), materials.as_deref()), report);

@@ -183,6 +183,17 @@ fn rigid_bodies_have_lines_at_the_corners_that_stay() {
     let told =
         |warnings: &[String]| warnings.iter().any(|warning| warning.contains("its corner at x = 3.2 lies inside"));
     assert!(told(&warnings), "{warnings:?}");
+    // A wedge has no edge there, and is widest there all the same; above the ground it parts nothing.
+    let wedge = |top: f64| {
+        let low = top - 1.0;
+        let shape = format!("[[3, {top}], [4, {low}], [5, {top}]]");
+        let hole = if top > 4.0 { "[[3, 4], [3.5, 3.5], [4.5, 3.5], [5, 4]]".to_owned() } else { shape.clone() };
+        let ground = format!("subtract = [{{ polygon = {hole} }}]\n    points_per_cell");
+        let ground = one.replace("points_per_cell", &ground);
+        lines(&format!("{ground}[[rigid]]\nname = \"wedge\"\npolygon = {shape}\n{down}\n"))
+    };
+    assert_eq!(wedge(4.0).0, [vec![6, 10], vec![]]);
+    assert_eq!(wedge(5.0).0, [vec![], vec![]]);
     for moved in ["displacement = [0.1, 0.0]", "free = [\"x\", \"y\", \"rotation\"]\nforce = [0, -10]"] {
         let (found, _, warnings) = lines(&punch(3.2, moved));
         assert!(found == [vec![], vec![]] && !told(&warnings), "{found:?} {warnings:?}");

@@ -2,6 +2,8 @@
 
 use super::MotionPath;
 use bsmpm::boundary::rigid::{Outline, Terrain};
+use bsmpm::schedule::between;
+use bsmpm::tensor::Vector;
 
 /// A rigid body that pushes and rubs the soil.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +34,27 @@ pub struct Rigid {
     pub amplitude: Vec<(f64, f64)>,
     /// m/s, m/s and rad/s  at the start, of free motions
     pub velocity: [f64; 3],
+}
+
+impl Rigid {
+    /// Whether it is given a way that leaves its place.
+    pub fn is_moved(&self) -> bool {
+        self.path.rows.iter().any(|(_, moved)| *moved != [0.0; 3])
+            || self.rotation.iter().any(|(_, angle)| *angle != 0.0)
+    }
+
+    /// Ends its way where it is at the time `until`.
+    pub(crate) fn stay(&mut self, until: f64) {
+        let rows: Vec<(f64, Vector<3>)> = self.path.rows.iter().map(|(t, moved)| (*t, (*moved).into())).collect();
+        if let Some(moved) = between(&rows, Vector::zeros(), until) {
+            self.path.rows.retain(|row| row.0 < until);
+            self.path.rows.push((until, moved.into()));
+        }
+        if let Some(angle) = between(&self.rotation, 0.0, until) {
+            self.rotation.retain(|row| row.0 < until);
+            self.rotation.push((until, angle));
+        }
+    }
 }
 
 /// Shape of a rigid body at the start, m, in the case's coordinates.

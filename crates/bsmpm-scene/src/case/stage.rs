@@ -170,7 +170,13 @@ impl Case {
         let acting = loads
             .enumerate()
             .filter_map(|(load, grows)| self.acts_since(Acting::Load(load), before).map(|since| since + grows));
-        acting.chain(self.gravity.iter().map(|gravity| gravity.ramp)).any(|end| end > until * (1.0 + 1e-9))
+        let rigid = self.rigid.iter().enumerate().filter(|(_, of)| of.force != [0.0; 3]);
+        let rigid = rigid.filter_map(|(number, of)| {
+            let since = self.acts_since(Acting::Rigid(number), before)?;
+            Some(since + of.ramp.max(rests(&of.amplitude)))
+        });
+        let gravity = self.gravity.iter().map(|gravity| gravity.ramp);
+        acting.chain(rigid).chain(gravity).any(|end| end > until * (1.0 + 1e-9))
     }
 
     /// Whether a strip that acts until a time moves later.

@@ -3,7 +3,7 @@
 use super::material::profile;
 use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring, side_of_bodies};
 use super::site::{AroundStrip, places, plate, segment};
-use crate::case::{Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Site, Traction};
+use crate::case::{Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Rigid, Site, Traction};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -288,7 +288,7 @@ pub(super) fn is_unloaded(root: &Record) -> bool {
 
 /// Lets every load that acts at once grow until `end`.
 pub(super) fn grow(
-    (gravity, tractions, loads): (Option<&mut Gravity>, &mut [Traction], &mut [PointLoad]),
+    (gravity, tractions, loads, rigid): (Option<&mut Gravity>, &mut [Traction], &mut [PointLoad], &mut [Rigid]),
     end: f64,
     report: &mut Report<'_>,
 ) {
@@ -298,7 +298,11 @@ pub(super) fn grow(
     let tractions = tractions.map(|(k, load)| (named("traction", k), &mut load.ramp));
     let loads = loads.iter_mut().enumerate().filter(|(_, load)| load.amplitude.is_empty());
     let loads = loads.map(|(k, load)| (named("point_load", k), &mut load.ramp));
-    for (key, ramp) in gravity.into_iter().chain(tractions).chain(loads).filter(|(_, ramp)| **ramp == 0.0) {
+    let pushed = |of: &Rigid| of.force != [0.0; 3] && of.amplitude.is_empty();
+    let rigid = rigid.iter_mut().enumerate().filter(|(_, of)| pushed(of));
+    let rigid = rigid.map(|(k, of)| (named("rigid", k), &mut of.ramp));
+    let all = gravity.into_iter().chain(tractions).chain(loads).chain(rigid);
+    for (key, ramp) in all.filter(|(_, ramp)| **ramp == 0.0) {
         *ramp = end;
         report.note(key, format!("{end:?}"), "strength_reduction.unloaded");
     }

@@ -2,6 +2,7 @@
 
 use super::NEARLY_INCOMPRESSIBLE;
 use super::place;
+use super::rigid;
 use super::site::{normal_of, places};
 use super::strip::moves;
 use crate::case::{Base, Body, Case, Drain, Geometry, Initial, Prescribed, Site, Support};
@@ -106,7 +107,7 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
         if !holds(case, component) {
             let message = format!(
                 "nothing holds the bodies along {name}: no fixed face, roller or face in contact that a body reaches prescribes \
-                 it, nor does a strip that a body is at, and a quasi-static analysis is singular then"
+                 it, nor does a strip or a rigid body that a body is at, and a quasi-static analysis is singular then"
             );
             report.error(record.place("boundary"), "boundary", message);
         }
@@ -214,7 +215,9 @@ fn holds(case: &Case, component: usize) -> bool {
         return true;
     }
     let mut faces = (0..case.grid.dims()).flat_map(|axis| [(axis, false), (axis, true)]);
-    faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper)) || held_by_strip(case, component)
+    faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper))
+        || held_by_strip(case, component)
+        || rigid::hold(case, component)
 }
 
 /// Whether the footing or a prescribed motion holds a component of a body.

@@ -1,7 +1,7 @@
 //! Strength that is divided not from the start on but in a stage, or at the end of one: what is left of the case until
 //! then, and the steps that follow.
 
-use crate::case::{Acting, Case, Counted, Gravity, PointLoad, Quantity, Stage, Traction};
+use crate::case::{Acting, Case, Counted, Gravity, PointLoad, Quantity, Rigid, Stage, Traction};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
@@ -47,11 +47,6 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     if case.analysis.regime == Regime::Dynamic {
         let message = "it looks for equilibrium, and needs a quasi-static analysis; in a dynamic one a [[stage]] with \
                        strength_reduction lets the body fail in time";
-        table.error("stage", message, report);
-    }
-    if !case.rigid.is_empty() {
-        let message = "rigid bodies would go on their ways while the strength falls, which was not shown: a [[stage]] with \
-                       strength_reduction divides it while they move";
         table.error("stage", message, report);
     }
     let Some(until) = case.end_of_stage(name) else {
@@ -144,6 +139,7 @@ fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
     };
     if steps > 0 {
         stay(case, until);
+        case.rigid.iter_mut().for_each(|rigid| rigid.stay(until));
     }
     if case.flow.is_some() && steps > 0 {
         case.stages.push(Stage { rests: true, ..nothing.clone() });
@@ -168,6 +164,7 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     let prescribed = kept(&|k| Acting::Strip(strips + k), case.prescribed.len());
     let loads = kept(&Acting::Load, tractions);
     let points = kept(&|k| Acting::Load(tractions + k), case.point_loads.len());
+    let rigid = kept(&Acting::Rigid, case.rigid.len());
     let bodies: Vec<bool> = (0..case.bodies.len()).map(|body| case.is_there(body, until)).collect();
     let end = steps.max(1) as f64 * case.analysis.dt;
     settle(case, until, end);
@@ -179,6 +176,9 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     retain(&mut case.prescribed, &prescribed);
     retain(&mut case.tractions, &loads);
     retain(&mut case.point_loads, &points);
+    retain(&mut case.rigid, &rigid);
+    // The ground is as it is drawn, and so are they.
+    case.rigid.iter_mut().for_each(|rigid| rigid.stay(0.0));
     retain(&mut case.bodies, &bodies);
     case.stages.clear();
     case.flow.iter_mut().for_each(|flow| flow.motion = Motion::Held);
@@ -187,7 +187,8 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     case.analysis.end = end;
     let ramps = (case.gravity.iter_mut().map(|Gravity { ramp, .. }| ramp))
         .chain(case.tractions.iter_mut().map(|Traction { ramp, .. }| ramp))
-        .chain(case.point_loads.iter_mut().map(|PointLoad { ramp, .. }| ramp));
+        .chain(case.point_loads.iter_mut().map(|PointLoad { ramp, .. }| ramp))
+        .chain(case.rigid.iter_mut().map(|Rigid { ramp, .. }| ramp));
     ramps.for_each(|ramp| *ramp = end);
 }
 
@@ -207,11 +208,12 @@ fn settle(case: &mut Case, until: f64, end: f64) {
     for rows in case.water.iter_mut().flat_map(|water| water.table.levels_mut()) {
         rows.drain(..rows.len() - 1);
     }
-    let loads = 0..case.tractions.len() + case.point_loads.len();
-    let ages: Vec<f64> =
-        loads.map(|load| until - case.acts_since(Acting::Load(load), until).unwrap_or(until)).collect();
+    let loads = (0..case.tractions.len() + case.point_loads.len()).map(Acting::Load);
+    let loads = loads.chain((0..case.rigid.len()).map(Acting::Rigid));
+    let ages: Vec<f64> = loads.map(|load| until - case.acts_since(load, until).unwrap_or(until)).collect();
     let tractions = case.tractions.iter_mut().map(|load| &mut load.amplitude);
-    let amplitudes = tractions.chain(case.point_loads.iter_mut().map(|load| &mut load.amplitude));
+    let points = case.point_loads.iter_mut().map(|load| &mut load.amplitude);
+    let amplitudes = tractions.chain(points).chain(case.rigid.iter_mut().map(|rigid| &mut rigid.amplitude));
     for (rows, age) in amplitudes.zip(ages).filter(|(rows, _)| !rows.is_empty()) {
         let share = between(rows, 0.0, age).or(rows.last().map(|row| row.1));
         *rows = vec![(end, share.unwrap_or(1.0))];
@@ -321,6 +323,14 @@ mod tests {
         assert!(time == timed.analysis.end && (share - 0.2).abs() < 1e-6, "it acts for one second: {share}");
         let level = timed.water.unwrap().table.table(0.0, 0.1).unwrap().0;
         assert!((level - 1.75).abs() < 1e-6, "{level}");
+        // What moves as told is held where it is then, beside ground as it is drawn at its first place.
+        let way = "rigid=[{ name = \"wall\", polygon = [[5, 0], [6, 0], [6, 4]], path = [[1.0, 0.2, 0.0], [3.0, 0.4, 0.0]], \
+                   rotation = [[4.0, 8.0]] }]";
+        let wall = |set: &[&str]| case(&[&[way][..], set].concat()).rigid[0].clone();
+        let held = wall(&[]);
+        assert_eq!(held.path.rows.last().map(|row| (row.0, (row.1[0] * 1e9).round())), Some((2.0, 0.3e9)));
+        assert!(matches!(held.rotation[..], [(t, angle)] if t == 2.0 && (angle - 4_f64.to_radians()).abs() < 1e-12));
+        assert!(!wall(&["strength_reduction.unloaded=true"]).is_moved());
         let rises = ["strength_reduction.stage=end", "water={ level_path = [[0.0, 1.0], [4.0, 2.0]] }"];
         let level = |t: f64| case(&rises).water.unwrap().table.table(0.0, t).unwrap().0;
         assert_eq!([2.0, 3.0, 4.0].map(level), [1.5, 1.75, 1.75], "it stays while the strength falls");

@@ -397,6 +397,29 @@ fn longest(case: &Case) -> f64 {
     edges(0).max(edges(1))
 }
 
+/// Whether a rigid body that rests or is moved holds a component of a body that lies at it from the start on.
+pub(super) fn hold(case: &Case, component: usize) -> bool {
+    let at_body = |at: [f64; 2]| case.bodies.iter().any(|body| body.region.contains(at));
+    let out = OVERLAP * case.grid.shortest();
+    let holds = |(number, rigid): (usize, &Rigid)| {
+        if rigid.free.contains(&true) || case.acts_since(Acting::Rigid(number), 0.0).is_none() {
+            return false;
+        }
+        let rubs = rigid.friction > 0.0;
+        match &rigid.shape {
+            RigidShape::Circle { center, radius } => rubs && place::ring(*center, radius + out).any(at_body),
+            RigidShape::Polygon(corners) => corners.iter().zip(corners.iter().cycle().skip(1)).any(|(from, to)| {
+                let normal = normal(*from, *to); // to the left, inside
+                let beside = |at: [f64; 2]| [at[0] - out * normal[0], at[1] - out * normal[1]];
+                let pushes = rubs || normal[component].abs() > OVERLAP;
+                pushes && place::along([*from, *to]).any(|at| at_body(beside(at)))
+            }),
+            RigidShape::InSpace(_) => false,
+        }
+    };
+    case.rigid.iter().enumerate().any(holds)
+}
+
 /// A place of a body among those that are `there` that is inside a rigid one as it is at the start, if there is one.
 fn overlap(case: &Case, rigid: &Rigid, there: impl Fn(usize) -> bool) -> Option<([f64; 2], usize)> {
     let cell = case.grid.shortest();

@@ -332,6 +332,21 @@ pub const QUASI_STATIC: &[Row] = &[
     row("bottom = \"fixed\"", "left = \"roller\"", "boundary", "nothing holds the bodies along y").up(1),
     row("bottom = \"fixed\"", "top = \"fixed\"", "boundary", "no fixed face, roller or face in contact that").up(1),
     row("bottom = \"fixed\"", "bottom = \"contact\"", "boundary", "nothing holds the bodies along x").up(1),
+    row(
+        "bottom = \"fixed\"",
+        "bottom = \"free\"\n[[rigid]]\nname = \"smooth\"\npolygon = [[0, -1], [2, -1], [2, 0], [0, 0]]",
+        "boundary",
+        "nothing holds the bodies along x",
+    )
+    .up(1),
+    row(
+        "bottom = \"fixed\"",
+        "bottom = \"free\"\n[[rigid]]\nname = \"free\"\npolygon = [[0, -1], [2, -1], [2, 0], [0, 0]]\nfriction = 0.5\n\
+         free = [\"y\"]\nforce = [0, 1]",
+        "boundary",
+        "nothing holds the bodies along y",
+    )
+    .up(1),
     row("bottom = \"fixed\"", "bottom = \"absorbing\"", "boundary.bottom", "there are no waves"),
     row("bottom = \"fixed\"", "left = \"free-field\"", "boundary.left", "nothing moves the free field"),
     row("bottom = \"fixed\"", "left = \"free-field\"", "boundary.left", "there are no waves"),

@@ -187,6 +187,14 @@ pub const STAGES_OF_ONE: &[Row] = &[
     .down(2),
     row(
         "[output]",
+        "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\n[[rigid]]\nname = \"block\"\nfree = [\"y\"]\n\
+         polygon = [[0.5, 1], [1.5, 1], [1, 2]]\nforce = [0, -1]\nramp = 2.0\n[output]",
+        "strength_reduction.stage",
+        "a load still changes at the end of that stage",
+    )
+    .down(2),
+    row(
+        "[output]",
         "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\n[[stage]]\nat = 0.5\nstrength_reduction = 1.1\n[output]",
         "strength_reduction.stage",
         "stage.0 divides the strength, too",

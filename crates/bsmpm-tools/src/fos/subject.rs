@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use bsmpm::model::Regime;
 use bsmpm::water::flow::Motion;
-use bsmpm_scene::words::Word;
-use bsmpm_scene::{Case, Counted, MotionPath, Quantity, Traction};
+use bsmpm_scene::words::{Geometry, Word};
+use bsmpm_scene::{Case, Counted, MotionPath, Quantity, Rigid, RigidShape, Traction};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
@@ -55,6 +55,8 @@ pub(super) struct Subject {
     is_grown: bool,
     /// whether the case begins with a stress, which trials do not
     is_stressed: bool,
+    /// rigid bodies that are there, and that are moved
+    has_rigid: [bool; 2],
     /// water flows until then; in the trials it rests, and has the pressures of that time
     holds_water: bool,
     /// whether the case records it with a scale of its own, as E δ/(γ H²)
@@ -149,6 +151,7 @@ impl Subject {
             conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
         }
         let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
+        let has_rigid = [!case.rigid.is_empty(), case.rigid.iter().any(Rigid::is_moved)];
         let holds_water = first.flow.is_some_and(|flow| flow.at_rest == Motion::Held);
         Ok(Self {
             path,
@@ -161,6 +164,7 @@ impl Subject {
             column,
             is_grown,
             is_stressed,
+            has_rigid,
             holds_water,
             is_scaled,
             conditions,
@@ -216,8 +220,25 @@ impl Subject {
                  displacements are those since, added to the elastic one"
             )
         });
+        let rigid = self.has_rigid[0].then(|| {
+            "the friction of rigid bodies is divided by the factor as tan(phi) is; they do not fail themselves"
+                .to_owned()
+        });
+        let stopped = self.has_rigid[1].then(|| {
+            "rigid bodies that move as told are held where they are then: what they press with falls as the soil does, and is \
+             no load"
+                .to_owned()
+        });
         let held = self.holds_water.then(|| bsmpm_scene::HELD_WATER.to_owned());
-        staged.into_iter().chain(held).chain(stiffened).chain(grown).chain(unstressed).collect()
+        staged
+            .into_iter()
+            .chain(rigid)
+            .chain(stopped)
+            .chain(held)
+            .chain(stiffened)
+            .chain(grown)
+            .chain(unstressed)
+            .collect()
     }
 
     /// The text of a trial's case as its `run.json` has it.
@@ -270,8 +291,25 @@ fn stiffness(case: &Case) -> f64 {
         .map_or(0.0, |gravity| gravity.acceleration.iter().fold(0.0, |length: f64, g| length.hypot(*g)));
     let weight = densities.fold(0.0, f64::max) * gravity * (high - low);
     let tractions = case.tractions.iter().map(Traction::largest);
-    let needed = (weight + tractions.fold(0.0, f64::max)) / softest / SMALL;
+    let driven = case.rigid.iter().map(|rigid| pressure(rigid, case.geometry, gravity));
+    let needed = (weight + tractions.chain(driven).fold(0.0, f64::max)) / softest / SMALL;
     if needed < UNCHANGED { 1.0 } else { format!("{needed:.2e}").parse().unwrap_or(needed) }
+}
+
+/// Pa  what drives a rigid body, over its width.
+fn pressure(rigid: &Rigid, geometry: Geometry, gravity: f64) -> f64 {
+    let is_round = geometry == Geometry::Axisymmetric;
+    let half = match &rigid.shape {
+        RigidShape::Circle { radius, .. } => *radius,
+        RigidShape::Polygon(corners) => {
+            let most = |side: f64| corners.iter().map(|corner| side * corner[0]).fold(f64::NEG_INFINITY, f64::max);
+            if is_round { most(1.0) } else { 0.5 * (most(1.0) + most(-1.0)) }
+        }
+        // Nothing moves freely in space.
+        RigidShape::InSpace(_) => return 0.0,
+    };
+    let area = if is_round { std::f64::consts::PI * half * half } else { 2.0 * half };
+    (rigid.force[0].hypot(rigid.force[1]) + rigid.mass[0] * gravity) / area
 }
 
 /// Why a case has no factor of safety, or none that could be trusted.
@@ -319,9 +357,9 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
              meant, or --stage NAME: it stays as it is at the end of that stage",
         ),
         (
-            !case.rigid.is_empty(),
-            "it has rigid bodies: what they carry changes with what is displaced, and no factor was shown with them; give \
-             tractions instead",
+            until.is_none() && case.rigid.iter().any(Rigid::is_moved),
+            "a rigid body moves on a way: what it holds changes as it goes; give --stage NAME, at whose end it is held where it \
+             is then, or leave its way out",
         ),
         (
             is_moved(case),
@@ -345,7 +383,8 @@ fn until(case: &Case, name: &str) -> Result<f64, Error> {
 /// What the tractions, then the point loads are multiplied with in time.
 fn amplitudes(case: &Case) -> impl Iterator<Item = &[(f64, f64)]> {
     let tractions = case.tractions.iter().map(|load| &load.amplitude[..]);
-    tractions.chain(case.point_loads.iter().map(|load| &load.amplitude[..]))
+    let points = case.point_loads.iter().map(|load| &load.amplitude[..]);
+    tractions.chain(points).chain(case.rigid.iter().map(|rigid| &rigid.amplitude[..]))
 }
 
 fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {
@@ -369,13 +408,15 @@ fn is_loaded(case: &Case) -> bool {
     let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
     let is_pushed = case.tractions.iter().any(|traction| traction.largest() > 0.0)
         || case.point_loads.iter().any(|load| load.force != [0.0; 3]);
-    (falls && weighs) || is_pushed
+    let is_driven = case.rigid.iter().any(|rigid| rigid.force != [0.0; 3] || falls && rigid.mass[0] > 0.0);
+    (falls && weighs) || is_pushed || is_driven
 }
 
 fn ramps(case: &Case) -> impl Iterator<Item = f64> {
     let gravity = case.gravity.iter().map(|gravity| gravity.ramp);
     let tractions = case.tractions.iter().map(|traction| traction.ramp);
-    gravity.chain(tractions).chain(case.point_loads.iter().map(|load| load.ramp))
+    let driven = case.rigid.iter().filter(|rigid| rigid.force != [0.0; 3] && rigid.amplitude.is_empty());
+    gravity.chain(tractions).chain(case.point_loads.iter().map(|load| load.ramp)).chain(driven.map(|rigid| rigid.ramp))
 }
 
 impl Conditions {

@@ -275,6 +275,7 @@ fn weight_that_comes_at_once_and_soft_soil_are_mended_and_told() {
 fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
     let bench = Bench::new(SLOPE, "kink=1.373");
     let strip = "footing={ from = [0.0, 10.0], to = [2.0, 10.0], displacement = [0.0, -0.1] }";
+    let wall = "rigid=[{ name = \"wall\", polygon = [[34, 0], [36, 0], [36, 4]], displacement = [-0.1, 0.0] }]";
     for (set, told) in [
         (vec!["solver.tolerance=2e-3"], "solver.tolerance = 2e-3 is too loose"),
         (vec!["solver.force_tolerance=1e-2"], "solver.force_tolerance = 1e-2 is too loose"),
@@ -298,6 +299,7 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
             "a load follows an amplitude",
         ),
         (vec![strip], "prescribes a motion"),
+        (vec![wall], "a rigid body moves on a way"),
         (vec!["grid.cel=1.0"], "grid.cel"),
     ] {
         let options: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();

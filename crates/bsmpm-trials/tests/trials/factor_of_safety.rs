@@ -18,7 +18,7 @@ fn between(range: (f64, f64), case: &str, set: &[&str], jobs: usize, output: &Pa
     of_stage((range, 0.05, None), case, set, jobs, output)
 }
 
-fn of_stage(
+pub(super) fn of_stage(
     ((from, to), width, stage): ((f64, f64), f64, Option<&str>),
     case: &str,
     set: &[&str],
@@ -81,7 +81,7 @@ fn the_number_of_jobs_does_not_change_a_digit() {
     }
 }
 
-fn estimate(found: &Value) -> f64 {
+pub(super) fn estimate(found: &Value) -> f64 {
     found["factor_of_safety"]["estimate"].as_f64().unwrap_or_else(|| panic!("{found}"))
 }
 

@@ -9,6 +9,7 @@ mod convergence;
 mod energy;
 mod energy_made;
 mod estimate;
+mod factor_beside_bodies;
 mod factor_of_safety;
 mod faults;
 mod free_field;

@@ -101,19 +101,36 @@ pub(super) fn segments(case: &Case, found: &mut FoundLine) {
     }
 }
 
-/// Corners at which edges of rigid bodies along an axis end that soil lies at, and goes on beyond: of bodies that stay
-/// at the grid lines there.
+/// Corners at which edges of rigid bodies along an axis end that soil lies at, and the widest ones of what pushes soil,
+/// beyond which it goes on: of bodies that stay at the grid lines there.
 pub(super) fn corners(case: &Case, found: &mut FoundLine) {
     for rigid in case.rigid.iter().filter(|rigid| rigid.rotation.is_empty() && !rigid.free[2]) {
         let RigidShape::Polygon(corners) = &rigid.shape else { continue };
+        let moves = |axis: usize| rigid.free[axis] || rigid.path.rows.iter().any(|(_, moved)| moved[axis] != 0.0);
         for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
             let Some(along) = [0, 1].into_iter().find(|axis| from[1 - axis] == to[1 - axis]) else { continue };
-            let moves = rigid.free[along] || rigid.path.rows.iter().any(|(_, moved)| moved[along] != 0.0);
             let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
-            if !moves && has_material(case, flat(middle), 1 - along) {
+            if !moves(along) && has_material(case, flat(middle), 1 - along) {
                 corner(case, rigid, along, (*from, from[along] - to[along]), found);
                 corner(case, rigid, along, (*to, to[along] - from[along]), found);
             }
+        }
+        for along in [0, 1].into_iter().filter(|along| !moves(*along) && moves(1 - along)) {
+            for outward in [-1.0, 1.0] {
+                widest(case, rigid, (corners, along, outward), found);
+            }
+        }
+    }
+}
+
+/// The lines through the corners that are outermost along an axis, of edges that lead there and that soil lies at.
+fn widest(case: &Case, rigid: &Rigid, (corners, along, outward): (&[[f64; 2]], usize, f64), found: &mut FoundLine) {
+    let out = |corner: &[f64; 2]| outward * corner[along];
+    let most = corners.iter().map(out).fold(f64::NEG_INFINITY, f64::max);
+    for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+        let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
+        if (out(from) == most) != (out(to) == most) && has_material(case, flat(middle), 1 - along) {
+            corner(case, rigid, along, (if out(from) == most { *from } else { *to }, outward), found);
         }
     }
 }
