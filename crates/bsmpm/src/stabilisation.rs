@@ -2,8 +2,9 @@
 //!
 //! Every method but `None` is an F-bar: dF-bar = (ratio)^(1/dof) dF, with a ratio_p = kept_p S(w dJ)_p / (w_p dJ_p)
 //! that replaces the point's own dilation by an average over the grid. S is the weighted map to the nodes and back,
-//! S(a)_p = sum_I N_Ip (1/m_I) sum_r N_Ir m_r a_r, with m the mass, or the volume where densities differ; the methods
-//! differ in w, in what is kept, and in the functions of S.
+//! S(a)_p = sum_I N_Ip (1/m_I) sum_r N_Ir m_r a_r, with m the mass, or the volume where densities differ, or, of
+//! dilations where water flows, either times J; the methods differ in w, in what is kept, and in the functions of
+//! S.
 //!
 //! S runs over the points of one group of materials at a time, m_I too: materials whose stiffness differs dilate
 //! by different amounts under the same stress. One average over both gives the stiffer one the strain of the softer: in

@@ -42,6 +42,7 @@ mod told;
 mod told_parts;
 mod undrained_stages;
 mod unsaturated_column;
+mod water_in_slopes;
 
 #[path = "../support/mod.rs"]
 mod support;

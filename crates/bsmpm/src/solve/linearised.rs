@@ -14,7 +14,6 @@ use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::damping::Viscous;
-use crate::step::nodes::weights;
 use crate::step::problem::Problem;
 use crate::step::residual::Residual;
 use crate::step::trial::Trial;
@@ -243,7 +242,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let (narrow, flux) = self.narrow(p);
         let moduli = K::Gradient::moduli(|k, l| narrow[(k, l)] - flux * trace[(k, l)]);
         add_point::<K, D>(&moduli, slopes, Pairs::All, block);
-        let weight = weights(model.weighting, points)[p];
+        let weight = nodes.dilation_weights(model, points)[p];
         let (dilated, mean) = self.trial.means(model, points, p);
         let [mut dilation, mut force] = [[Vector::<D>::zeros(); MOST]; 2];
         for ((dilation, force), slope) in dilation.iter_mut().zip(&mut force).zip(slopes) {

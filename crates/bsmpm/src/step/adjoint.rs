@@ -15,7 +15,6 @@ use crate::kinematics::Kinematics;
 use crate::material::Material;
 use crate::model::Model;
 use crate::points::Points;
-use crate::step::nodes::weights;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
 use crate::tensor::{Symmetric, Tensor};
@@ -102,7 +101,7 @@ pub fn transposed<K: Kinematics<D>, const D: usize>(
     value: impl Fn(usize) -> f64 + Sync,
 ) -> Vec<f64> {
     let Problem { model, shape, nodes, points, halo, .. } = *problem;
-    let weights = weights(model.weighting, points);
+    let weights = nodes.dilation_weights(model, points);
     let per_weight = |p: usize| if adjoint.has(model, points, p) { value(p) / weights[p] } else { 0.0 };
     let mut sums = nodes.mean_dilation(model, (shape, points), halo, per_weight);
     for (p, sum) in sums.iter_mut().enumerate() {

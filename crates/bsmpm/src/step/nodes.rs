@@ -35,6 +35,8 @@ struct Averages<const D: usize> {
     /// weigh; they are numbered within the nodes (see [`Shape::lowered`]), and those that no point touches weigh
     /// nothing
     lower: Option<(Shape<D>, Vec<f64>)>,
+    /// m^D (or kg)  what the points weigh in averages of dilations; `None`: as in all averages
+    of_points: Option<Vec<f64>>,
 }
 
 /// Nodal quantities of one step; flat arrays over the window's nodes, the same on every rank that shares a node.
@@ -211,7 +213,8 @@ impl<const D: usize> Nodes<D> {
         found: impl Fn(usize, [f64; C]) -> T + Sync,
     ) -> Vec<T> {
         let weight = self.averages.weight.as_ref().unwrap_or(&self.weight);
-        self.average_with(model, (shape, weight), points, halo, value, found)
+        let weights = weights(model.weighting, points);
+        self.average_with(model, (shape, weight), (points, weights), halo, value, found)
     }
 
     /// What these points, which the nodes were mapped from, weigh in the integrals of the stress: m^D of the reference
@@ -237,9 +240,18 @@ impl<const D: usize> Nodes<D> {
     ) -> Vec<f64> {
         let (value, found) = (|p| [value(p)], |_, [mean]: [f64; 1]| mean);
         match &self.averages.lower {
-            Some((lower, weight)) => self.average_with(model, (lower, weight), points, halo, value, found),
+            Some((lower, weight)) => {
+                let weights = self.dilation_weights(model, points);
+                self.average_with(model, (lower, weight), (points, weights), halo, value, found)
+            }
             None => self.average(model, (shape, points), halo, value, found),
         }
+    }
+
+    /// What the points weigh in averages of dilations, m^D (or kg). Where water flows by their volumes now, as in its
+    /// balance: so that the averages of ground that keeps its water are 1.
+    pub fn dilation_weights<'a, K>(&'a self, model: &Model<K, D>, points: &'a Points<D>) -> &'a [f64] {
+        self.averages.of_points.as_deref().unwrap_or_else(|| weights(model.weighting, points))
     }
 
     /// With functions `shape` and their weights; zero where these are at most the threshold.
@@ -247,12 +259,12 @@ impl<const D: usize> Nodes<D> {
         &self,
         model: &Model<K, D>,
         (shape, weight): (&Shape<D>, &[f64]),
-        points: &Points<D>,
+        (points, weights): (&Points<D>, &[f64]),
         halo: &dyn Halo,
         value: impl Fn(usize) -> [f64; C] + Sync,
         found: impl Fn(usize, [f64; C]) -> T + Sync,
     ) -> Vec<T> {
-        let (weights, grouped) = (weights(model.weighting, points), model.grouped(points));
+        let grouped = model.grouped(points);
         let weighted = |p: usize| value(p).map(|v| weights[p] * v);
         let mut nodal = halo.sum(&transfer::to_nodes_grouped(shape, grouped, weighted));
         transfer::divide(&mut nodal, weight, self.averages.threshold);
@@ -290,25 +302,30 @@ impl<const D: usize> Averages<D> {
     /// `threshold` is that of the nodes' own weights.
     fn of<K>(model: &Model<K, D>, (shape, points): (&Shape<D>, &Points<D>), threshold: f64, halo: &dyn Halo) -> Self {
         let (weights, grouped) = (weights(model.weighting, points), model.grouped(points));
-        let weight = |shape: &Shape<D>| halo.sum(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]));
+        let weight =
+            |shape: &Shape<D>, weights: &[f64]| halo.sum(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]));
+        let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
+        let of_points: Option<Vec<f64>> = (flows && model.stabilisation.lowers())
+            .then(|| weights.iter().zip(points.F.iter()).map(|(weight, F)| weight * F.determinant()).collect());
         let lowered = || {
             let lower = shape.lowered(&model.grid, points);
             let subgrid = model.stabilisation == Stabilisation::SubgridFBar;
             let lower = if subgrid { lower.merged(&model.grid, grouped, halo) } else { lower };
-            let weight = weight(&lower);
+            let weight = weight(&lower, of_points.as_deref().unwrap_or(weights));
             (lower, weight)
         };
         let own = grouped.count() > 1 || model.weighting != model.inertial_weighting();
-        let of_nodes = (model.stabilisation.averages() && own).then(|| weight(shape));
+        let of_nodes = (model.stabilisation.averages() && own).then(|| weight(shape, weights));
         Self {
             threshold: of_nodes.as_ref().map_or(threshold, |weight| self::threshold(weight, halo)),
             weight: of_nodes,
             lower: model.stabilisation.lowers().then(lowered),
+            of_points,
         }
     }
 }
 
-pub(crate) fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
+fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
     match weighting {
         Weighting::Mass => &points.mass,
         Weighting::Volume => &points.volume,
