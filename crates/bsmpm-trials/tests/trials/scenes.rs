@@ -369,7 +369,7 @@ fn a_stress_by_depth_acts_on_a_surface_with_its_force_and_moment() {
     let scratch = Scratch::with_case(BENT);
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let rows = history(&scratch.path("case.out"));
-    // Along x -300 to +100 Pa over .5 m, along y 40 to 200: -50 and 60 N/m in the middle, and a moment of 400 (.5)^2/12 N.
+    // Along x -300 to +100 Pa over .5 m, along y 40 to 200: -50 and 60 N/m in the middle, and 400 (.5)^2/12 N.
     let off =
         [("reaction-x", 50.0), ("reaction-y", -60.0)].map(|(name, expected)| at(&rows, name, 1.0) / expected - 1.0);
     let bent = [("n", -50.0), ("q", 60.0), ("m", -60.0 - 400.0 * 0.25 / 12.0)];
