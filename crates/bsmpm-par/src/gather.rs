@@ -135,11 +135,12 @@ impl<'a, const D: usize> FieldSource<'a, D> {
             Self::Asked(FrameField::Body, _) => Number::U64,
             _ => Number::F64,
         };
-        let numbers = rows.iter().flat_map(|row| &row[at..at + components]).copied();
+        let mut numbers = Vec::with_capacity(rows.len() * components);
+        rows.iter().for_each(|row| numbers.extend_from_slice(&row[at..at + components]));
         let values = match number {
-            Number::U16 => FieldValues::U16(numbers.map(|number| number as u16).collect()),
-            Number::U64 => FieldValues::U64(numbers.map(|number| number as u64).collect()),
-            Number::F64 => return Field::real(name, components, numbers.collect()),
+            Number::U16 => FieldValues::U16(numbers.into_iter().map(|number| number as u16).collect()),
+            Number::U64 => FieldValues::U64(numbers.into_iter().map(|number| number as u64).collect()),
+            Number::F64 => return Field::real(name, components, numbers),
         };
         Field { name: name.into(), components, values }
     }

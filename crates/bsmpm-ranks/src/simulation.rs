@@ -19,6 +19,7 @@ use bsmpm::parallel::Halo;
 use bsmpm::points::{Column, Points, Seed};
 use bsmpm::schedule::Schedule;
 use bsmpm::tensor::{Symmetric, Vector};
+use bsmpm::water::observed::PoreWater;
 use mpi::environment::Universe;
 use petsc_rs::Petsc;
 use std::borrow::Cow;
@@ -204,6 +205,9 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         placed: impl FnOnce(Range<usize>) -> P,
         idle: &[bool],
     ) -> [u64; 2] {
+        let water = PoreWater::of(&self.model, &self.points, self.time());
+        let taken = water.map_or(0.0, |water| water.taken_by(&gone, &*self.halo));
+        self.points.surface.crossed.removed += taken;
         let before = self.points.len();
         self.points.remove(&gone);
         let left = self.points.len();

@@ -96,21 +96,28 @@ pub struct CrossedState {
     pub faces: Vec<f64>,
     /// In by every inflow.
     pub inflows: Vec<f64>,
+    /// Taken in by ground that stages took away.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub removed: f64,
 }
 
 impl CrossedState {
-    pub(crate) fn of(Crossed { drains, faces, inflows }: &Crossed) -> Self {
-        Self { drains: drains.clone(), faces: faces.clone(), inflows: inflows.clone() }
+    pub(crate) fn of(Crossed { drains, faces, inflows, removed }: &Crossed) -> Self {
+        Self { drains: drains.clone(), faces: faces.clone(), inflows: inflows.clone(), removed: *removed }
     }
 
     fn volumes(&self) -> Crossed {
-        let Self { drains, faces, inflows } = self.clone();
-        Crossed { drains, faces, inflows }
+        let Self { drains, faces, inflows, removed } = self.clone();
+        Crossed { drains, faces, inflows, removed }
     }
 
     fn is_none(&self) -> bool {
-        self.drains.is_empty() && self.faces.is_empty() && self.inflows.is_empty()
+        self.drains.is_empty() && self.faces.is_empty() && self.inflows.is_empty() && is_zero(&self.removed)
     }
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 /// Points that histories follow, and the books of energy.

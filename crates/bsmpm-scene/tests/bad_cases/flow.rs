@@ -129,9 +129,9 @@ pub const FLOW: &[Row] = &[
     .down(2),
     row(
         "[solver]",
-        "[[stage]]\nat = \"1 day\"\nremove = [\"fill\"]\n[solver]",
-        "stage.0.remove",
-        "bodies that are removed or placed are not shown",
+        "[[stage]]\nat = \"1 day\"\nadd = [\"fill\"]\n[solver]",
+        "stage.0.add",
+        "bodies that are placed are not shown",
     )
     .down(2),
     row(

@@ -9,6 +9,8 @@ pub struct Crossed {
     pub faces: Vec<f64>,
     /// into the ground, through every inflow
     pub inflows: Vec<f64>,
+    /// that ground had taken in since the start which stages took away
+    pub removed: f64,
 }
 
 impl Crossed {
@@ -19,9 +21,10 @@ impl Crossed {
             sums.resize(more.len(), 0.0);
             sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         }
+        self.removed += more.removed;
     }
 
-    /// All that has left the ground, less what has come in.
+    /// All that has left the ground through its surface, less what has come in.
     pub fn out(&self) -> f64 {
         self.drains.iter().chain(&self.faces).sum::<f64>() - self.inflows.iter().sum::<f64>()
     }

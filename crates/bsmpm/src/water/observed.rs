@@ -107,8 +107,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         -conductivity.component_mul(&(gradient[p] - self.weight)) * relative / self.water.unit_weight
     }
 
-    /// What the points have gained of water since the start and what has left the ground, over the larger of what
-    /// crossed its surface and what the points have taken in and given off, added; a billionth of the pores counts for
+    /// What the points have gained of water since the start and what has left the ground, or was removed with it, over
+    /// the larger of that and of what the points have taken in and given off, added; a billionth of the pores counts for
     /// nothing. 0 where no water is lost, `None` where none flows or its pressures are held. One reduction.
     pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
         self.water.flow.as_ref().filter(|flow| flow.motion != Motion::Held)?;
@@ -116,9 +116,21 @@ impl<'a, const D: usize> PoreWater<'a, D> {
             .map(|p| self.flow(p).map_or(0.0, |(_, soil)| self.points.volume[p] * soil.porosity))
             .collect();
         let sums = halo.total(&[self.taken().collect(), self.taken().map(f64::abs).collect(), pores]);
-        let out = self.points.surface.crossed.out();
-        let scale = sums[1].max(out.abs()).max(NOTHING * sums[2]);
+        let crossed = &self.points.surface.crossed;
+        let out = crossed.out() + crossed.removed;
+        let scale = sums[1].max(crossed.out().abs()).max(crossed.removed.abs()).max(NOTHING * sums[2]);
         Some(if scale > 0.0 { (sums[0] + out) / scale } else { 0.0 })
+    }
+
+    /// m3  (per metre in plane strain)  of water that the points whose ids `wanted` says have taken in since the start;
+    /// 0 where none flows. One reduction.
+    pub fn taken_by(&self, wanted: impl Fn(u64) -> bool, halo: &dyn Halo) -> f64 {
+        if self.water.flow.is_none() {
+            return 0.0;
+        }
+        let own: Exact =
+            self.points.id.iter().zip(self.taken()).filter(|(id, _)| wanted(**id)).map(|of| of.1).collect();
+        halo.total(&[own])[0]
     }
 
     /// m3  (per metre in plane strain)  of water that every point has taken in since the start, at its density then

@@ -51,7 +51,7 @@ impl WaterReport {
         let held = drains.iter().chain(&inflows).map(|report| report.held).collect();
         let through =
             |reports: &[crate::water::drain::DrainReport]| reports.iter().map(|report| report.through).collect();
-        let crossed = Crossed { drains: through(&drains), faces, inflows: through(&inflows) };
+        let crossed = Crossed { drains: through(&drains), faces, inflows: through(&inflows), removed: 0.0 };
         let measure = water.measure(pores.round_off);
         Some(Self { stored: 0.0, crossed, held, left: water.left, measure, unknowns: pores.unknowns })
     }

@@ -1,6 +1,6 @@
 //! What is not shown to be right together with water that flows, and what is doubtful with it.
 
-use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Initial, Site, Support};
+use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Initial, Site, Stage, Support};
 use crate::grid::GridAxis;
 use crate::record::Record;
 use crate::report::Report;
@@ -155,11 +155,18 @@ fn not_shown(what: &str) -> String {
 }
 
 /// What a stage changes.
-fn of_stage(record: &Record, report: &mut Report<'_>) {
-    let bodies = "bodies that are removed or placed are";
+fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report<'_>) {
+    if record.gives("remove") && case.analysis.regime != Regime::QuasiStatic {
+        record.error("remove", not_shown("bodies that are removed while all moves are"), report);
+    } else if case.stages.get(number).is_some_and(|stage| !stage.remove.is_empty() && !drains_what_is_bare(case, stage))
+    {
+        report.warn(format!(
+            "stage.{number}.remove: what is laid bare lets no water through, as the ground's surface without a drain; a [[drain]] \
+             along it drains it, from the start of the run on"
+        ));
+    }
     let changes = [
-        ("remove", bodies),
-        ("add", bodies),
+        ("add", "bodies that are placed are"),
         ("boundary", "faces that change are"),
         ("strength_reduction", "strength that changes while water flows is"),
     ];
@@ -171,6 +178,17 @@ fn of_stage(record: &Record, report: &mut Report<'_>) {
                        total stress can be exchanged in a \"quasi-static\" analysis";
         record.error("materials", format!("{}: {instead}", not_shown("laws that are exchanged are")), report);
     }
+}
+
+/// Whether a drain lies between what a stage removes and what stays.
+fn drains_what_is_bare(case: &Case, stage: &Stage) -> bool {
+    let is_gone = |number: usize| stage.remove.contains(&number);
+    let beside = |at: &[f64; 3], gone: bool| {
+        let bodies = case.bodies.iter().enumerate().filter(|(number, _)| is_gone(*number) == gone);
+        bodies.into_iter().any(|(_, body)| place::is_at(std::slice::from_ref(body), &case.grid, *at))
+    };
+    let between = |drain: &Drain| places(drain, case).iter().all(|at| beside(at, true) && beside(at, false));
+    case.flow.iter().flat_map(|flow| &flow.drains).any(between)
 }
 
 /// What acts on the bodies.
@@ -196,7 +214,7 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (_, record) in rubs.zip(strips).filter(|(rubs, _)| *rubs) {
         report.error(record.origin, &record.path, not_shown("strips that rub and let go are"));
     }
-    root.records("stage").iter().for_each(|record| of_stage(record, report));
+    root.records("stage").iter().enumerate().for_each(|stage| of_stage(case, stage, report));
     if let Some(record) = root.record("gravity").filter(|record| record.number("ramp").is_some_and(|ramp| ramp > 0.0)) {
         record.error("ramp", not_shown("gravity that grows is"), report);
     }
