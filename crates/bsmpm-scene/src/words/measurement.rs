@@ -145,7 +145,7 @@ const GAP: &[(&str, &str)] = &[("-least", "the least"), ("-largest", "the larges
 const ENERGY: &[(&str, &str)] = &[
     ("-kinetic", "kinetic energy of the points"),
     ("-elastic", "elastic energy of the points, and what compressed water and pores that suction has emptied hold"),
-    ("-plastic", "dissipated by plastic flow"),
+    ("-plastic", "dissipated by plastic flow, damping and seepage"),
     ("-external", "work of gravity, loads and what moves, less what friction at faces and faces that absorb take"),
     ("-numerical", "loss of the algorithm: the sum of the next five"),
     ("-transfer", "lost between points and nodes"),

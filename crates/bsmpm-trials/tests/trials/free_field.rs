@@ -4,7 +4,7 @@ use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{agree, at, history};
 
-/// Two layers, of which the upper one yields, that rise by a step in their middle, on a base that absorbs; they shake
+/// Two layers, of which the upper one yields and the lower one is damped, that rise by a step in their middle, on a base that absorbs; they shake
 /// both ways.
 const SLOPE: &str = r#"
 geometry = "plane-strain"
@@ -22,6 +22,7 @@ model = "hencky"
 young = "100 MPa"
 poisson = 0.25
 density = 2000
+damping = { ratio = 0.02, frequency = 3 }
 [material.soft]
 model = "mohr-coulomb"
 young = "40 MPa"

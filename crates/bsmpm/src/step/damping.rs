@@ -8,6 +8,7 @@
 use crate::model::Model;
 use crate::points::Points;
 use crate::real::Real;
+use crate::step::inertia::Inertia;
 use crate::step::nodes::Nodes;
 use crate::tensor::{Symmetric, Tensor};
 
@@ -26,9 +27,10 @@ pub struct Viscous {
 }
 
 impl Damping {
-    /// Of a step; none without inertia, whose time is none.
+    /// Of a step; none without inertia, whose time is none, and of a state that no step has led to.
     pub fn of<K, const D: usize>(model: &Model<K, D>, nodes: &Nodes<D>) -> Self {
-        let Some(inertia) = nodes.inertia.as_ref().filter(|_| !model.damping.is_empty()) else {
+        let steps = |inertia: &&Inertia| inertia.dt > 0.0 && !model.damping.is_empty();
+        let Some(inertia) = nodes.inertia.as_ref().filter(steps) else {
             return Self::default();
         };
         Self(model.damping.iter().map(|time| time / inertia.dt).collect())
