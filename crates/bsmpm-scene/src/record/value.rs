@@ -8,6 +8,9 @@ use crate::report::{Report, shortened};
 use crate::schema::{Kind, Range, Words};
 use crate::unit::{self, Dimension};
 
+/// Rows of a list that are wrong one after the other, behind which the rest is not looked at.
+const WRONG_ROWS: usize = 3;
+
 /// Of a file that `--set` names: a case is whole before it is overridden.
 pub(crate) const UNREAD: &str =
     "files are read where the case file names them, not by --set: name it there, or set rows of numbers";
@@ -183,7 +186,15 @@ impl ValueReader<'_, '_> {
             Value::Table(table) if table.get("file").is_some() => return self.unread(node),
             _ => return self.unexpected(node),
         };
-        let read: Vec<Option<ListRow>> = items.iter().map(|item| self.row(item, columns)).collect();
+        let mut read: Vec<Option<ListRow>> = Vec::with_capacity(items.len());
+        for item in items {
+            read.push(self.row(item, columns));
+            let wrong = read.iter().rev().take(WRONG_ROWS).filter(|row| row.is_none()).count();
+            if wrong == WRONG_ROWS && read.len() < items.len() {
+                let more = items.len() - read.len();
+                return self.fail(node, format!("{more} further rows were not read"));
+            }
+        }
         read.into_iter().collect::<Option<Vec<ListRow>>>().map(Datum::Rows)
     }
 
