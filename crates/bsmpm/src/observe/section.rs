@@ -36,7 +36,8 @@ pub struct SectionForces {
 }
 
 /// Forces across a section; material beyond its edge, or none, counts for nothing. The cut is smeared over the cells at
-/// the section, with its middle on it.
+/// the section, with its middle on it; at a support or a surface over cells inside of it, from which the forces are
+/// extrapolated to the section.
 pub fn section_forces<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
@@ -44,7 +45,7 @@ pub fn section_forces<const D: usize>(
     halo: &dyn Halo,
 ) -> SectionForces {
     let mut sums = [const { Exact::ZERO }; 6];
-    if let Some(cut) = Cut::of(grid, section) {
+    if let Some(cut) = Cut::of(grid, section).and_then(|cut| cut.inside(grid, points, halo)) {
         for p in 0..points.len() {
             let volume = points.volume[p] * points.F.at(p).determinant();
             let share = cut.share(&points.x[p], volume);
@@ -69,15 +70,30 @@ struct Cut<const D: usize> {
     across: Vector<3>,     // unit vector n
     halves: [f64; 2],      // m  of its lengths along them
     round: bool,
-    smear: f64, // m  over which the nodes' motion grows from 0 to 1
-    reach: f64, // m  beyond which a point is from all of that
+    smear: f64,           // m  over which the nodes' motion grows from 0 to 1
+    reach: f64,           // m  beyond which a point is from all of that
+    ramps: Vec<[f64; 2]>, // m, -  where along n it grows, and how much of it
+}
+
+/// How far a smeared cut may go to one side of a section along n.
+struct Side {
+    room: f64,  // m  from the section to the end of the material
+    least: f64, // m  from the middle of a ramp to there
+    held: bool, // whether the material ends at a face of the grid
+}
+
+impl Side {
+    /// m  by which a ramp in the section is too near to the end
+    fn lack(&self) -> f64 {
+        self.least - self.room
+    }
 }
 
 impl<const D: usize> Cut<D> {
-    /// `None` of a section without an area, or whose middle has left the grid.
+    /// `None` of a section without an area, or whose middle has left the grid; its ramp is in the section.
     fn of(grid: &Grid<D>, section: &Section<D>) -> Option<Self> {
         let middles = section.lines.iter().map(|[from, to]| (from + to) / 2.0);
-        let middle = middles.sum::<Vector<D>>() / section.lines.len() as f64;
+        let middle = onto(grid, middles.sum::<Vector<D>>() / section.lines.len() as f64);
         let mut lines = section.lines.iter().map(|[from, to]| (spatial(&(to - from)), (to - from).norm()));
         let (first, length) = lines.next().filter(|(_, length)| *length > 0.0)?;
         let first = first / length;
@@ -96,7 +112,79 @@ impl<const D: usize> Cut<D> {
         });
         let reach = 0.5 * smear + (grid.order() as f64 + 1.0) * support;
         let (along, halves) = ([first, second], [0.5 * length, 0.5 * other]);
-        Some(Self { middle, along, across, halves, round: section.round, smear, reach })
+        Some(Self { middle, along, across, halves, round: section.round, smear, reach, ramps: vec![[0.0, 1.0]] })
+    }
+
+    /// With ramps that neither what holds the material nor a load on its surface has a part in: its forces are those at
+    /// the section less the loads between, so they are extrapolated. `None` where the material does not reach.
+    fn inside(mut self, grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> Option<Self> {
+        let sides = self.sides(grid, points, halo);
+        if sides.iter().any(|side| side.room < -0.25 * self.smear) {
+            return None;
+        }
+        let [before, beyond] = &sides;
+        // Of a body too thin for a ramp between its ends the face of the grid is what surely acts on it.
+        let gives_way = |to: &Side, from: &Side| from.lack() > 0.0 && (to.lack() <= 0.0 || from.held && !to.held);
+        let (onward, shift, left) = match () {
+            () if gives_way(beyond, before) => (1.0, before.lack(), -beyond.lack() - before.lack()),
+            () if gives_way(before, beyond) => (-1.0, beyond.lack(), -before.lack() - beyond.lack()),
+            () => return Some(self),
+        };
+        let apart = self.smear.min(0.5 * left);
+        let count = if apart >= 0.25 * self.smear { 3 } else { 1 };
+        let places: Vec<f64> = (0..count).map(|k| onward * (shift + f64::from(k) * apart)).collect();
+        let weight = |own: usize| -> f64 {
+            let others = places.iter().enumerate().filter(|(k, _)| *k != own);
+            others.map(|(_, other)| other / (other - places[own])).product()
+        };
+        self.ramps = (0..places.len()).map(|k| [places[k], weight(k)]).collect();
+        self.reach += places[places.len() - 1].abs();
+        Some(self)
+    }
+
+    /// Before and beyond the section.
+    fn sides(&self, grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> [Side; 2] {
+        // A function that is not zero at a surface has its node within half of its support.
+        let least = (0.5 * grid.order() as f64 + 1.0) * self.smear;
+        let far = 2.0 * least + 3.0 * self.smear;
+        let mut ends = [-far; 2];
+        let wide = Self { reach: far, ramps: Vec::new(), ..*self };
+        for p in 0..points.len() {
+            let volume = points.volume[p] * points.F.at(p).determinant();
+            if wide.share(&points.x[p], volume) > 0.0 {
+                let half = 0.5 * volume.powf(1.0 / D as f64);
+                let apart = spatial(&(points.x[p] - self.middle)).dot(&self.across);
+                ends = [ends[0].max(half - apart), ends[1].max(half + apart)];
+            }
+        }
+        halo.maximum(&mut ends);
+        [0, 1].map(|side| {
+            let (face, room) = (self.to_face(grid, side == 1), ends[side]);
+            let held = room + 0.25 * self.smear >= face;
+            // At a face one node moves what is held, and the cells of as many nodes as the order are shorter: a ramp
+            // over them moves another weight than is beyond its middle.
+            let at_face = Side { room: face, least: 0.5 * grid.order() as f64 * self.smear, held };
+            if held { at_face } else { Side { room, least, held } }
+        })
+    }
+
+    /// From the section to the face of the grid along or against n, m: from its edge if it is all but parallel to it.
+    fn to_face(&self, grid: &Grid<D>, along: bool) -> f64 {
+        let distance = |axis: usize| {
+            let slope = if along { self.across[axis] } else { -self.across[axis] };
+            let (at, length) = (self.middle[axis], grid.axes()[axis].length());
+            let tilt: f64 = (0..D - 1).map(|k| self.halves[k] * self.along[k][axis].abs()).sum();
+            let tilt = if tilt < 0.25 * self.smear { tilt } else { 0.0 };
+            let straight = if slope > 0.0 { length - at } else { at };
+            if slope == 0.0 { f64::INFINITY } else { (straight - tilt) / slope.abs() }
+        };
+        (0..D).map(distance).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Part of the motion that a node has, by its place along n from the section (m).
+    fn beyond(&self, place: f64) -> f64 {
+        let ramp = |[at, weight]: &[f64; 2]| weight * ((place - at) / self.smear + 0.5).clamp(0.0, 1.0);
+        self.ramps.iter().map(ramp).sum()
     }
 
     /// The part of a point of some volume (m^D) that is within the section's edge; 0 of one that is far from it.
@@ -130,7 +218,7 @@ impl<const D: usize> Cut<D> {
             let number: [usize; D] = std::array::from_fn(|axis| node / W.pow((D - 1 - axis) as u32) % W);
             let place = Vector::from_fn(|axis, _| grid.axes()[axis].greville(cell[axis] + number[axis]));
             let arm = spatial::<D>(&(place - self.middle));
-            let beyond = (arm.dot(&self.across) / self.smear + 0.5).clamp(0.0, 1.0);
+            let beyond = self.beyond(arm.dot(&self.across));
             let gradient = spatial(&Vector::<D>::from_fn(|along, _| {
                 let factor =
                     |axis: usize| if axis == along { rows[axis].1[number[axis]] } else { rows[axis].0[number[axis]] };
@@ -167,6 +255,15 @@ fn force_and_moment<const D: usize>(
         if a.max(b) < D { turned(b, a) } else { 0.0 }
     });
     (traction, moment)
+}
+
+/// A place, on the face of the grid if it has left the grid by less than half of the cell there: a section in a face
+/// goes with material whose motion is known to that.
+fn onto<const D: usize>(grid: &Grid<D>, place: Vector<D>) -> Vector<D> {
+    let nearest = Vector::from_fn(|axis, _| place[axis].clamp(0.0, grid.axes()[axis].length()));
+    let Some(cell) = grid.locate(&nearest) else { return place };
+    let (_, size) = grid.cell_box(&cell);
+    if (0..D).all(|axis| (place[axis] - nearest[axis]).abs() < 0.5 * size[axis]) { nearest } else { place }
 }
 
 /// A vector in space; one of a plane has nothing along its normal.

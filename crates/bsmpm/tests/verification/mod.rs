@@ -24,6 +24,7 @@ mod penalty;
 mod rigid;
 mod rotation;
 mod sections;
+mod sections_at_ends;
 mod seepage;
 mod stability;
 mod strips;

@@ -10,11 +10,11 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 use std::f64::consts::PI;
 
-const G: f64 = 10.0;
-const DENSITY: f64 = 100.0;
+pub(super) const G: f64 = 10.0;
+pub(super) const DENSITY: f64 = 100.0;
 
 /// A body of cells of `h` on the lower left corner, under its own weight in one step.
-fn weighed<K: Kinematics<D>, const D: usize>(
+pub(super) fn weighed<K: Kinematics<D>, const D: usize>(
     h: f64,
     cells: [usize; D],
     per_cell: usize,
@@ -33,7 +33,7 @@ fn weighed<K: Kinematics<D>, const D: usize>(
 }
 
 /// Across a line, of a solid across a rectangle of two middle lines, which go with the material.
-fn cut<K: Kinematics<D>, const D: usize, const N: usize>(
+pub(super) fn cut<K: Kinematics<D>, const D: usize, const N: usize>(
     scene: &Scene<K, D>,
     lines: [[[f64; D]; 2]; N],
 ) -> SectionForces {
