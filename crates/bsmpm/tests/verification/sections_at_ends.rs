@@ -64,7 +64,7 @@ fn the_normal_force_at_the_base_and_the_top_of_a_column_is_the_weight_above() {
     assert_eq!(found, SectionForces::default());
 }
 
-/// A block of 2 m by 2 m without weight: on a fixed base under a pressure of 30 kPa at the left and 50 kPa at the right,
+/// A block of 2 m by 2 m without weight: on a fixed base under a pressure that grows from 30 kPa at the left to 50 kPa,
 /// and between planes of symmetry under 40 kPa; at all levels, up to the load.
 #[test]
 fn forces_at_planes_of_symmetry_and_under_a_surcharge_are_those_of_the_load() {
