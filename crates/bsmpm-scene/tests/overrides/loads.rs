@@ -114,6 +114,32 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
     }
 }
 
+/// Of what a stage takes away or places, a pressure minds only what is there while it acts.
+#[test]
+fn a_pressure_acts_on_what_stages_leave_free() {
+    let ground = "geometry = 'plane-strain'\nanalysis = { type = 'quasi-static', steps = 4 }\n\
+                  grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, order = 'quadratic' }\n\
+                  material.soil = { model = 'hencky', young = 1e6, poisson = 0.3 }\nboundary = { bottom = 'fixed' }\n\
+                  [[body]]\nmaterial = 'soil'\nbox = { lower = [0, 0], upper = [4, 2] }\npoints_per_cell = 2\n\
+                  [[body]]\nname = 'fill'\nmaterial = 'soil'\nbox = { lower = [0, 2], upper = [4, 3] }\npoints_per_cell = 2\n\
+                  [[traction]]\nname = 'air'\nfrom = [0, 2]\nto = [4, 2]\npressure = 10.0\n[[stage]]\nat = 0.5\n";
+    for (stage, acts) in [
+        ("remove = ['fill']\napply = ['air']", true),
+        ("add = ['fill']\nrelease = ['air']", true),
+        ("remove = ['fill']", false),
+        ("add = ['fill']", false),
+    ] {
+        let case = bsmpm_scene::Case::from_text("case.toml", &format!("{ground}{stage}\n"), &[]);
+        match case {
+            Ok(case) => {
+                let Push::Pressure { side, .. } = case.tractions[0].push else { panic!() };
+                assert!(acts && side == -1.0, "below it: {stage}");
+            }
+            Err(errors) => assert!(!acts && format!("{errors:?}").contains("a free surface"), "{stage}: {errors:?}"),
+        }
+    }
+}
+
 /// From below, on a plate of a fifth of a cell's length, in flat cells and within one: the side was the wrong one where
 /// neither a quarter of x's cells nor of y's lay in it.
 #[test]
