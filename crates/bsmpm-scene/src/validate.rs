@@ -18,6 +18,7 @@ mod ratio;
 mod reduction;
 mod rigid;
 mod shape;
+mod side;
 mod site;
 mod solid;
 mod solver;
@@ -137,6 +138,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     if report.failed() {
         return None;
     }
+    side::of_pressures(&mut case, record, report);
     body::warn_of_overlap(&case, report);
     solver::of_case(&mut case, record, report);
     solid::check(&case, record, report);

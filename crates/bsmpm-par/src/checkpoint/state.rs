@@ -77,7 +77,7 @@ pub struct CheckpointState {
     /// inflows without ground, three times that number added.
     pub told_strips: BTreeSet<usize>,
     /// Rigid bodies of which it was told that they came too fast (twice their number) or go into the soil (and one),
-    /// and behind those pairs that have met.
+    /// and behind those pairs that have met, and bodies that went through a face.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub told_rigid: BTreeSet<usize>,
     /// The step of the newest frame.

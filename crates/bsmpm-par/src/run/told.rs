@@ -4,9 +4,11 @@ use super::Run;
 use crate::checkpoint::Outlet;
 use bsmpm::control::Accepted;
 use bsmpm::kinematics::Kinematics;
+use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
 use bsmpm_io::manifest::ManifestOutflow;
 use bsmpm_ranks::simulation::Simulation;
+use bsmpm_scene::{Face, Support};
 
 /// Cells that a rigid body may move in a step at the soil that it touches.
 const FASTEST: f64 = 0.5;
@@ -60,6 +62,37 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                     accepted.t
                 ));
             }
+        }
+    }
+
+    /// Faces of the grid hold material, and let rigid bodies through.
+    pub(super) fn tell_let_through(&mut self, accepted: &Accepted) {
+        let count = self.case.rigid.len();
+        for (number, report) in accepted.report.rigid.iter().enumerate() {
+            let body = &self.simulation.model.boundary.rigid[number];
+            let known = 2 * count + count * count + number;
+            if !(body.acts && body.is_free()) || self.told_rigid.contains(&known) {
+                continue;
+            }
+            let (grid, slack) = (&self.case.grid, DEEPEST * self.case.grid.shortest());
+            let further = |face: Face| {
+                let [start, now] = [Vector::zeros(), report.moved].map(|moved| body.extent(&moved, face.axis));
+                let past = |[least, most]: [f64; 2]| match face.upper {
+                    true => most - (grid.upper()[face.axis] - grid.lower()[face.axis]),
+                    false => -least,
+                };
+                start.zip(now).is_some_and(|(start, now)| past(now) > past(start).max(0.0) + slack)
+            };
+            let faces = self.case.faces_at(accepted.t).into_iter();
+            let mut holding = faces.filter(|of| !matches!(of.support, Support::Free | Support::Outflow));
+            let Some(through) = holding.find(|of| of.face.axis < D && further(of.face)) else { continue };
+            let (name, side) = (self.case.rigid[number].name.clone(), through.face.side(self.case.geometry));
+            self.told_rigid.insert(known);
+            self.warn(format!(
+                "rigid `{name}`: at t = {} it goes through the face {side} of the grid: faces hold material, and no rigid \
+                 bodies; what shall stop it is soil before that face",
+                accepted.t
+            ));
         }
     }
 

@@ -55,7 +55,8 @@ pub(super) static RIGID: Table = Table {
             "free",
             Names,
             Optional,
-            "motions that follow from forces: x, y, rotation; the others are on the way given",
+            "motions that follow from forces: x, y, rotation; the others are on the way given. Faces of the grid hold material, \
+             and no rigid bodies: only soil and forces stop one. On a plane of symmetry give half of mass, inertia, forces",
         ),
         key(
             "mass",

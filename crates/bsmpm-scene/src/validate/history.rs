@@ -81,6 +81,14 @@ fn read(
         );
         record.error("face", message, report);
     }
+    if let Some(side) = record.word::<Side>("face").filter(|_| measured == Measurement::Reaction)
+        && is_never_held(root, side)
+    {
+        let message = format!(
+            "nothing is ever held at {side}: neither [boundary], a stage nor a [[prescribed]] face does; it reads 0"
+        );
+        record.error("face", message, report);
+    }
     let is_outlet = |side: Side| supports(root, side).contains(&Support::Outflow);
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
         record.error("quantity", "nothing leaves: no face in [boundary] is \"outflow\"", report);
@@ -120,6 +128,14 @@ fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut
 fn supports(root: &Record, side: Side) -> Vec<Support> {
     let later = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));
     root.record("boundary").into_iter().chain(later).filter_map(|boundary| super::support(boundary, side)).collect()
+}
+
+/// Whether nothing ever holds material at a face.
+fn is_never_held(root: &Record, side: Side) -> bool {
+    let moves = |motion: &Record| motion.gives("face") && motion.word::<Side>("face") == Some(side);
+    let lets_go = |support: &Support| matches!(support, Support::Free | Support::Outflow);
+    let is_axis = root.word("geometry") == Some(Geometry::Axisymmetric) && side == Side::Left;
+    !is_axis && supports(root, side).iter().all(lets_go) && !root.records("prescribed").iter().any(moves)
 }
 
 /// Whether it is nothing where nothing has a velocity.

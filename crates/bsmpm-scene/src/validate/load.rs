@@ -1,10 +1,9 @@
 //! Tractions, point loads, and the stress at the start.
 
 use super::material::profile;
-use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring, side_of_bodies};
+use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring};
 use super::site::{AroundStrip, places, plate, segment};
 use crate::case::{Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Rigid, Site, Traction};
-use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
@@ -16,7 +15,7 @@ use bsmpm::model::Regime;
 pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Traction> {
     let mut read = |record: &Record| {
         let line = line(record, around, report);
-        let push = line.and_then(|line| push(record, line, around, report));
+        let push = push(record);
         let course = course(record, around, report);
         let (line, push, (ramp, amplitude)) = (line?, push?, course?);
         let traction = Traction { line, push, ramp, amplitude };
@@ -78,40 +77,12 @@ fn stresses(record: &Record) -> Option<[Profile; 3]> {
     Some([along(0), along(1), Profile::constant(0.0)])
 }
 
-/// What a traction is; of a pressure on which side the body lies.
-fn push(record: &Record, line: LoadedLine, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Push> {
-    if !record.gives("pressure") {
-        return Some(Push::Stress(stresses(record)?));
+/// What a traction is; on which side of a pressure bodies lie only the whole case tells ([`super::side`]).
+fn push(record: &Record) -> Option<Push> {
+    match record.gives("pressure") {
+        true => Some(Push::Pressure { profile: profile(record, "pressure")?, side: 0.0 }),
+        false => Some(Push::Stress(stresses(record)?)),
     }
-    let profile = profile(record, "pressure")?;
-    let Some(side) = side(&line, (around.grid?, around.bodies?)) else {
-        let message = "bodies lie on both sides of it, or on none: a pressure acts on a free surface";
-        record.error("pressure", message, report);
-        return None;
-    };
-    Some(Push::Pressure { profile, side })
-}
-
-/// On which side of a line bodies lie: 1 to the left of a segment, towards the middle of a circle, in the sense of a
-/// plate's axis, else -1; `None` of both, or none.
-pub(super) fn side(line: &LoadedLine, (grid, bodies): (&GridSpec, &[Body])) -> Option<f64> {
-    let holds = |at: [f64; 2]| bodies.iter().any(|body| body.region.contains(at));
-    let count = |off: f64| match *line {
-        LoadedLine::Segment { from, to } => {
-            let (x, y) = (to[0] - from[0], to[1] - from[1]);
-            let (x, y) = (-y / x.hypot(y) * off, x / x.hypot(y) * off);
-            along([from, to]).filter(|at| holds([at[0] + x, at[1] + y])).count()
-        }
-        LoadedLine::Circle { center, radius } => ring(center, radius - off).filter(|at| holds(*at)).count(),
-        LoadedLine::Plate(plate) => {
-            let inside = |mut at: [f64; 3]| {
-                at[plate.normal()] += off;
-                bodies.iter().any(|body| body.region.contains_in_space(at))
-            };
-            places(Site::Plate(plate), grid).into_iter().filter(|at| inside(*at)).count()
-        }
-    };
-    side_of_bodies(grid, count)
 }
 
 /// All point loads in the order of the file, without those that have an error.

@@ -1,5 +1,6 @@
 //! Rigid bodies.
 
+mod beyond;
 mod solid;
 
 use super::site::{AroundStrip, normal};
@@ -333,6 +334,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
                 record.path
             ));
         }
+        beyond::check(case, rigid, record, report);
         if let RigidShape::InSpace(solid) = &rigid.shape {
             solid::check(case, (number, rigid, solid), record, report);
         } else if let Some((at, body)) = overlap(case, rigid, |body| together(case, number, body).is_some()) {

@@ -57,6 +57,10 @@ const WRONG: &[Wrong] = &[
         "the gap at a face that is in no contact",
         &[("quantity = \"heave\"", "quantity = \"gap\"\nface = \"left\"")],
     ),
+    at_rest(
+        "what a free face carries",
+        &[("[output]", "[[history]]\nquantity = \"reaction\"\nface = \"top\"\n[output]")],
+    ),
     wet(
         "an axis that is drained",
         &[
@@ -107,6 +111,14 @@ const WRONG: &[Wrong] = &[
     dynamic("a cut through nothing", &[("from     = [1.0, 0.0]", "from = [1.0, 1.25]")]),
     dynamic("a profile of a field that is none", &[("\"plastic-strain\"]", "\"plastic strain\"]")]),
     at_rest("a field of frames that stands there already", &[("every = 0.5", "every = 0.5\nfields = [\"q\", \"p\"]")]),
+    at_rest(
+        "a pressure on what fill covers",
+        &[(
+            "[output]",
+            "[[traction]]\nfrom = [0, 1]\nto = [2, 1]\npressure = 1e3\n[[body]]\nname = \"fill\"\nmaterial = \"soil\"\n\
+             box = { lower = [0, 1], upper = [2, 1.5] }\npoints_per_cell = 3\n[[stage]]\nat = 0.5\nadd = [\"fill\"]\n[output]",
+        )],
+    ),
     at_rest(
         "a free field in a quasi-static analysis",
         &[("bottom = \"fixed\"", "bottom = \"fixed\"\nleft = \"free-field\"")],

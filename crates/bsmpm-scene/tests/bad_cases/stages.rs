@@ -209,4 +209,20 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "cannot be divided under the stress",
     )
     .down(6),
+    row(
+        "[output]",
+        "[[body]]\nname = \"fill\"\nmaterial = \"soil\"\npoints_per_cell = 3\nbox = { lower = [0, 1], upper = [2, 1.5] }\n\
+         [[stage]]\nat = 0.5\nadd = [\"fill\"]\n[[traction]]\nfrom = [0, 1]\nto = [2, 1]\npressure = 1e3\n[output]",
+        "traction.0.pressure",
+        "at t = 0.5, when it acts, bodies lie on both sides of it",
+    )
+    .down(11),
+    row(
+        "[output]",
+        "[[stage]]\nat = 0.5\nboundary = { right = \"roller\" }\n[[history]]\nquantity = \"reaction\"\nface = \"right\"\n\
+         name = \"held\"\n[[history]]\nquantity = \"reaction\"\nface = \"left\"\n[output]",
+        "history.1.face",
+        "nothing is ever held at left",
+    )
+    .down(9),
 ];

@@ -114,6 +114,68 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
     }
 }
 
+/// Of what a stage takes away or places, a pressure minds only what is there while it acts.
+#[test]
+fn a_pressure_acts_on_what_stages_leave_free() {
+    let ground = "geometry = 'plane-strain'\nanalysis = { type = 'quasi-static', steps = 4 }\n\
+                  grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, order = 'quadratic' }\n\
+                  material.soil = { model = 'hencky', young = 1e6, poisson = 0.3 }\nboundary = { bottom = 'fixed' }\n\
+                  [[body]]\nmaterial = 'soil'\nbox = { lower = [0, 0], upper = [4, 2] }\npoints_per_cell = 2\n\
+                  [[body]]\nname = 'fill'\nmaterial = 'soil'\nbox = { lower = [0, 2], upper = [4, 3] }\npoints_per_cell = 2\n\
+                  [[traction]]\nname = 'air'\nfrom = [0, 2]\nto = [4, 2]\npressure = 10.0\n[[stage]]\nat = 0.5\n";
+    for (stage, acts) in [
+        ("remove = ['fill']\napply = ['air']", true),
+        ("add = ['fill']\nrelease = ['air']", true),
+        ("remove = ['fill']", false),
+        ("add = ['fill']", false),
+    ] {
+        let case = bsmpm_scene::Case::from_text("case.toml", &format!("{ground}{stage}\n"), &[]);
+        match case {
+            Ok(case) => {
+                let Push::Pressure { side, .. } = case.tractions[0].push else { panic!() };
+                assert!(acts && side == -1.0, "below it: {stage}");
+            }
+            Err(errors) => assert!(!acts && format!("{errors:?}").contains("a free surface"), "{stage}: {errors:?}"),
+        }
+    }
+}
+
+/// Half of a rigid body on half of the ground, and one that never comes to it.
+#[test]
+fn rigid_bodies_that_faces_cut_and_that_stay_outside_are_told() {
+    let with = |rigid: &str| {
+        let text = format!(
+            "geometry = 'plane-strain'\nanalysis = {{ type = 'quasi-static', steps = 4 }}\n\
+             grid = {{ lower = [0, 0], upper = [4, 4], cell = 0.5, order = 'quadratic' }}\n\
+             material.soil = {{ model = 'hencky', young = 1e6, poisson = 0.3 }}\n\
+             boundary = {{ bottom = 'fixed', left = 'roller' }}\n\
+             [[body]]\nmaterial = 'soil'\nbox = {{ lower = [0, 0], upper = [4, 2] }}\npoints_per_cell = 2\n\
+             [[rigid]]\nname = 'it'\n{rigid}\n"
+        );
+        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings.join("\n")
+    };
+    let push = "free = ['y']\nforce = [0, -1.0]";
+    let cut = "lies on both sides of left";
+    let away = "does not come into it";
+    for (rigid, told) in [
+        (format!("polygon = [[-1, 2], [1, 2], [1, 3], [-1, 3]]\n{push}"), cut),
+        (format!("circle = {{ center = [0, 3], radius = 1 }}\n{push}"), cut),
+        ("polygon = [[5, 2], [6, 2], [6, 3], [5, 3]]".to_owned(), away),
+        (format!("polygon = [[6, 2], [7, 2], [7, 3], [6, 3]]\n{push}"), away),
+    ] {
+        let found = with(&rigid);
+        assert!(found.contains(told), "{rigid}: {found}");
+    }
+    for rigid in [
+        format!("polygon = [[0, 2], [1, 2], [1, 3], [0, 3]]\n{push}"),
+        "polygon = [[-1, 2], [1, 2], [1, 3], [-1, 3]]\ndisplacement = [0, -0.1]".to_owned(),
+        "polygon = [[5, 2], [6, 2], [6, 3], [5, 3]]\npath = [[1.0, -2.0, 0]]".to_owned(),
+    ] {
+        let found = with(&rigid);
+        assert!(!found.contains(cut) && !found.contains(away), "{rigid}: {found}");
+    }
+}
+
 /// From below, on a plate of a fifth of a cell's length, in flat cells and within one: the side was the wrong one where
 /// neither a quarter of x's cells nor of y's lay in it.
 #[test]

@@ -110,6 +110,48 @@ fn ground_heaves_by_what_is_taken_away_in_one_stage_or_two() {
     }
 }
 
+/// Half of a tunnel in ground whose stress is alike in all directions: a plug of soil, and a pressure where it was.
+fn tunnel(share: f64) -> String {
+    let corner = |k: usize| {
+        let (sin, cos) = (k as f64 * std::f64::consts::PI / 24.0).sin_cos();
+        format!("[{}, {}]", sin.max(0.0), 5.0 - cos)
+    };
+    let corners: Vec<String> = (0..=24).map(corner).collect();
+    format!(
+        "geometry = \"plane-strain\"\nanalysis = {{ type = \"quasi-static\", end = 2, steps = 8 }}\n\
+         grid = {{ lower = [0, 0], upper = [8, 10.5], cell = 0.25, order = \"quadratic\" }}\n\
+         boundary = {{ bottom = \"fixed\", left = \"roller\", right = \"roller\" }}\n\
+         gravity = {{ acceleration = [0, -9.81] }}\ninitial = {{ k0 = 1.0 }}\n\
+         [material.soil]\nmodel = \"hencky\"\nyoung = \"20 MPa\"\npoisson = 0.3\nunit_weight = {WEIGHT}\n\
+         [[body]]\nmaterial = \"soil\"\nbox = {{ lower = [0, 0], upper = [8, 10] }}\npoints_per_cell = 3\n\
+         subtract = [{{ circle = {{ center = [0, 5], radius = 1 }} }}]\n\
+         [[body]]\nname = \"plug\"\nmaterial = \"soil\"\npolygon = [{}]\npoints_per_cell = 3\n\
+         [[traction]]\nname = \"air\"\ncircle = {{ center = [0, 5], radius = 1 }}\n\
+         pressure = {{ value = 0, at_y = 10, per_metre = {} }}\n\
+         [[stage]]\nat = 1\nremove = [\"plug\"]\napply = [\"air\"]\n\
+         [[history]]\nquantity = \"max-displacement\"\n[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n",
+        corners.join(", "),
+        share * WEIGHT
+    )
+}
+
+/// What presses as the soil did that it replaces leaves the ground at rest, and the floor with the weight of all of it;
+/// half of it, half of what the ground moves without any.
+#[test]
+fn a_tunnel_that_a_pressure_holds_stays_as_it_was() {
+    let [whole, half, none] = [1.0, 0.5, 1e-9].map(|share| run(&tunnel(share)));
+    let moved = |found| at(found, "max-displacement", 2.0);
+    let [rest, halved] = [&whole, &half].map(|found| moved(found) / moved(&none));
+    // The points' quadrature beside the circle.
+    assert!(rest < 0.01 && (halved - 0.5).abs() < 0.01, "{rest}, {halved}");
+    let floor = |found, t: f64| at(found, "reaction-y", t);
+    let plug = 0.5 * std::f64::consts::PI * WEIGHT;
+    for (found, share) in [(&whole, 0.0), (&half, 0.5), (&none, 1.0)] {
+        let lost = (floor(found, 0.0) - floor(found, 2.0)) / plug;
+        assert!((lost - share).abs() < 0.05, "{lost} of the plug's weight, exactly {share}");
+    }
+}
+
 /// Half of the sliding block is gone at .02 s, and another one falls from .03 s on.
 fn staged_block() -> String {
     let halved = changed(SLIDING_BLOCK, "upper = [0.5, 0.2] }", "upper = [0.3, 0.2] }");

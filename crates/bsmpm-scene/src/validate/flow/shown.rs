@@ -5,7 +5,7 @@ use crate::grid::GridAxis;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
-use crate::validate::load::side;
+use crate::validate::side::side;
 use crate::validate::{place, site};
 use crate::words::{AnalysisType, Side, Word};
 use bsmpm::model::Regime;
@@ -313,7 +313,7 @@ fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     for (number, drain) in flow.drains.iter().enumerate() {
         let Given::Head(Course(rows)) = &drain.given else { continue };
         let lines = drain.site.lines();
-        if !lines.iter().any(|line| side(line, (&case.grid, &case.bodies)).is_some()) {
+        if !lines.iter().any(|line| side(line, &case.grid, case.bodies.iter()).is_some()) {
             continue; // a face of the grid, or a well inside the ground
         }
         let highest = rows.iter().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);

@@ -93,6 +93,14 @@ impl<const D: usize> RigidBody<D> {
         both && apart < 0.0 && self.outline.places().iter().any(is_inside)
     }
 
+    /// m  the least and the largest coordinate of its outline along an axis of the plane once it has `moved`, from the
+    /// grid's lower corner; none in space.
+    pub fn extent(&self, moved: &Vector<3>, axis: usize) -> Option<[f64; 2]> {
+        let pose = self.pose(moved);
+        let along = self.outline.places().into_iter().map(|x| pose.place(&x)[axis]);
+        along.fold(None, |extent, x| Some(extent.map_or([x; 2], |[least, most]: [f64; 2]| [least.min(x), most.max(x)])))
+    }
+
     /// Where it is once it has `moved`.
     pub fn pose(&self, moved: &Vector<3>) -> Pose<D> {
         let (sin, cos) = if D == 2 { moved[2].sin_cos() } else { (0.0, 1.0) };

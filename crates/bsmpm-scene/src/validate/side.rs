@@ -1,0 +1,53 @@
+//! On which side of lines and plates bodies lie.
+
+use super::place::{along, ring, side_of_bodies};
+use super::site::places;
+use crate::case::{Acting, Body, Case, LoadedLine, Push, Site};
+use crate::grid::GridSpec;
+use crate::record::Record;
+use crate::report::Report;
+
+/// On which side of a line bodies lie: 1 to the left of a segment, towards the middle of a circle, in the sense of a
+/// plate's axis, else -1; `None` of both, or none.
+pub(super) fn side<'a>(line: &LoadedLine, grid: &GridSpec, bodies: impl Iterator<Item = &'a Body>) -> Option<f64> {
+    let bodies: Vec<&Body> = bodies.collect();
+    let holds = |at: [f64; 2]| bodies.iter().any(|body| body.region.contains(at));
+    let count = |off: f64| match *line {
+        LoadedLine::Segment { from, to } => {
+            let (x, y) = (to[0] - from[0], to[1] - from[1]);
+            let (x, y) = (-y / x.hypot(y) * off, x / x.hypot(y) * off);
+            along([from, to]).filter(|at| holds([at[0] + x, at[1] + y])).count()
+        }
+        LoadedLine::Circle { center, radius } => ring(center, radius - off).filter(|at| holds(*at)).count(),
+        LoadedLine::Plate(plate) => {
+            let inside = |mut at: [f64; 3]| {
+                at[plate.normal()] += off;
+                bodies.iter().any(|body| body.region.contains_in_space(at))
+            };
+            places(Site::Plate(plate), grid).into_iter().filter(|at| inside(*at)).count()
+        }
+    };
+    side_of_bodies(grid, count)
+}
+
+/// Finds on which side of every pressure bodies lie: the same of all that are there at any time at which it acts.
+pub(super) fn of_pressures(case: &mut Case, root: &Record, report: &mut Report<'_>) {
+    for (number, record) in root.records("traction").iter().enumerate() {
+        let traction = &case.tractions[number];
+        let Push::Pressure { profile, .. } = traction.push else { continue };
+        let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
+        let acting = times.filter(|t| case.acts_since(Acting::Load(number), *t).is_some());
+        let at = |t: f64| {
+            let there = case.bodies.iter().enumerate().filter(|(body, _)| case.is_there(*body, t));
+            side(&traction.line, &case.grid, there.map(|(_, body)| body))
+        };
+        let sides: Vec<(f64, Option<f64>)> = acting.map(|t| (t, at(t))).collect();
+        let first = sides.first().and_then(|(_, side)| *side);
+        if let Some((t, _)) = sides.iter().find(|(_, side)| side.is_none() || *side != first) {
+            let when = if *t > 0.0 { format!("at t = {t}, when it acts, ") } else { String::new() };
+            let told = "bodies lie on both sides of it, or on none: a pressure acts on a free surface";
+            record.error("pressure", format!("{when}{told}"), report);
+        }
+        case.tractions[number].push = Push::Pressure { profile, side: first.unwrap_or_default() };
+    }
+}
