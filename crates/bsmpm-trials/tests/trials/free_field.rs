@@ -4,8 +4,8 @@ use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{agree, at, history};
 
-/// Two layers, of which the upper one yields and the lower one is damped, that rise by a step in their middle, on a base
-/// that absorbs; they shake both ways.
+/// Two layers, of which the upper one yields and the lower one is damped, that rise by a step in their middle, on a
+/// base that absorbs; they shake both ways.
 const SLOPE: &str = r#"
 geometry = "plane-strain"
 [analysis]
