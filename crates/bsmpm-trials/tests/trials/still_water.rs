@@ -57,7 +57,7 @@ const TIGHT: &str = "[solver]\ntolerance = 1e-14\nforce_tolerance = 1e-10\n";
 /// Pa  of the water over the ground's height
 const PRESSURE: f64 = 9810.0 * 7.0;
 
-/// V1: sigma_v' = -gamma' z, nothing moves, the pressure is that of the depth.
+/// sigma_v' = -gamma' z, nothing moves, the pressure is that of the depth.
 #[test]
 fn submerged_level_ground_has_its_buoyant_weight_and_rests() {
     let scratch = Scratch::with_case(GROUND);

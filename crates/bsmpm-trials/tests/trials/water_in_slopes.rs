@@ -39,7 +39,7 @@ fn factor(set: &[String], inclined: f64, base: f64) -> f64 {
     FRICTION.to_radians().tan() * normal / shear.abs()
 }
 
-/// V10: water flows along the slope, from its whole surface that drains, through soil without a level. Seen along the
+/// Water flows along the slope, from its whole surface that drains, through soil without a level. Seen along the
 /// slope.
 #[test]
 fn seepage_along_an_infinite_slope_leaves_the_share_of_its_buoyant_weight() {
@@ -62,7 +62,7 @@ fn seepage_along_an_infinite_slope_leaves_the_share_of_its_buoyant_weight() {
     assert!(found.iter().all(|found| (found / closed - 1.0).abs() < 1e-3), "{found:?}");
 }
 
-/// V10: still water whose line is the surface: its pressure is that of the depth straight below. On rock that the
+/// Still water whose line is the surface: its pressure is that of the depth straight below. On rock that the
 /// cells do not follow; of the soil's upper half, as cells that both fill give the rock what is the soil's to carry
 /// (all of it: .951, .898).
 #[test]
@@ -97,7 +97,7 @@ fn a_line_along_an_infinite_slope_presses_as_its_depth_straight_below() {
     assert!((found[0] / closed - 1.0).abs() < 0.0125 && (found[1] / closed - 1.0).abs() < 0.002, "{found:?}");
 }
 
-/// V11: m above the toe; the middle of another program's band by twice the elastic displacement; Lane and Griffiths
+/// m above the toe; the middle of another program's band by twice the elastic displacement; Lane and Griffiths
 /// (2000), where a value of theirs is known.
 const LEVELS: [(&str, f64, Option<f64>); 7] = [
     ("10.0", 1.8225, Some(1.85)),

@@ -125,11 +125,14 @@ impl<const D: usize> Cut<D> {
         let [before, beyond] = &sides;
         // Of a body too thin for a ramp between its ends the face of the grid is what surely acts on it.
         let gives_way = |to: &Side, from: &Side| from.lack() > 0.0 && (to.lack() <= 0.0 || from.held && !to.held);
-        let (onward, shift, left) = match () {
-            () if gives_way(beyond, before) => (1.0, before.lack(), -beyond.lack() - before.lack()),
-            () if gives_way(before, beyond) => (-1.0, beyond.lack(), -before.lack() - beyond.lack()),
-            () => return Some(self),
+        let (onward, shift) = if gives_way(beyond, before) {
+            (1.0, before.lack())
+        } else if gives_way(before, beyond) {
+            (-1.0, beyond.lack())
+        } else {
+            return Some(self);
         };
+        let left = -before.lack() - beyond.lack();
         let apart = self.smear.min(0.5 * left);
         let count = if apart >= 0.25 * self.smear { 3 } else { 1 };
         let places: Vec<f64> = (0..count).map(|k| onward * (shift + f64::from(k) * apart)).collect();

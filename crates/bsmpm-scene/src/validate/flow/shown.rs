@@ -184,8 +184,8 @@ fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report
 fn drains_what_is_bare(case: &Case, stage: &Stage) -> bool {
     let is_gone = |number: usize| stage.remove.contains(&number);
     let beside = |at: &[f64; 3], gone: bool| {
-        let bodies = case.bodies.iter().enumerate().filter(|(number, _)| is_gone(*number) == gone);
-        bodies.into_iter().any(|(_, body)| place::is_at(std::slice::from_ref(body), &case.grid, *at))
+        let mut bodies = case.bodies.iter().enumerate().filter(|(number, _)| is_gone(*number) == gone);
+        bodies.any(|(_, body)| place::is_at(std::slice::from_ref(body), &case.grid, *at))
     };
     let between = |drain: &Drain| places(drain, case).iter().all(|at| beside(at, true) && beside(at, false));
     case.flow.iter().flat_map(|flow| &flow.drains).any(between)
