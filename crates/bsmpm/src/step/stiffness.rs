@@ -190,14 +190,11 @@ fn accumulate<K: Kinematics<D>, const D: usize>(volume: f64, slopes: &[Slope<K, 
     for a in 0..size {
         let weighted = slopes[a] * volume;
         for (moment, other) in moments[a * size + a..(a + 1) * size].iter_mut().zip(&slopes[a..]) {
-            // Apart from its place until it is whole: fewer instructions, the same bits.
-            let mut sum = *moment;
             for j in 0..K::Gradient::SLOPES {
                 for i in 0..K::Gradient::SLOPES {
-                    sum[(i, j)] += weighted[i] * other[j];
+                    moment[(i, j)] += weighted[i] * other[j];
                 }
             }
-            *moment = sum;
         }
     }
 }
