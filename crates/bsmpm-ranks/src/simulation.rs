@@ -8,7 +8,7 @@ use crate::signals::Requests;
 use crate::slab::Slabs;
 use crate::timers::Timers;
 use crate::traffic::{TrafficCounts, TrafficKind};
-use bsmpm::boundary::Surface;
+use bsmpm::boundary::{Idle, Surface};
 use bsmpm::control::{Accepted, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::grid::Grid;
@@ -197,13 +197,13 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     }
 
     /// Begins a stage: takes the points away whose ids `gone` says, and places those that `placed` has for columns of
-    /// the grid; loads that are `idle` so far may be on what comes. Returns how many of all ranks went and came.
+    /// the grid; surfaces that are `idle` so far may be on what comes. Returns how many of all ranks went and came.
     /// Collective.
     pub fn begin_stage<P: Iterator<Item = Seed<D>>>(
         &mut self,
         gone: impl Fn(u64) -> bool,
         placed: impl FnOnce(Range<usize>) -> P,
-        idle: &[bool],
+        idle: &Idle,
     ) -> [u64; 2] {
         let water = PoreWater::of(&self.model, &self.points, self.time());
         let taken = water.map_or(0.0, |water| water.taken_by(&gone, &*self.halo));
@@ -219,11 +219,14 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.points.place(placed(self.columns()).filter(is_ours));
         let mut numbers = [(before - left) as f64, (self.points.len() - left) as f64, f64::from(self.lacks_room())];
         self.halo.reduce(&mut numbers);
+        if numbers[1] > 0.0 {
+            self.fill(left);
+        }
         if numbers[2] > 0.0 {
             self.make_room();
         }
         if numbers[..2] != [0.0; 2] {
-            self.settle_loads(idle);
+            self.settle_surfaces(idle);
         }
         self.points.sort_by_cell(&self.model.grid);
         if numbers[..2] != [0.0; 2] {
@@ -232,14 +235,27 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         [numbers[0] as u64, numbers[1] as u64]
     }
 
-    /// Anchors loads that did not act to what is there now, and puts them there.
-    fn settle_loads(&mut self, idle: &[bool]) {
+    /// Gives the points from `first` on, which have been placed, their water, and enters it. Collective.
+    fn fill(&mut self, first: usize) {
+        let t = self.time();
+        let Some(water) = self.model.water.as_ref().filter(|water| water.flow.is_some()) else { return };
+        water.fill(&mut self.points, first, t);
+        let mut placed = self.points.id[first..].to_vec();
+        placed.sort_unstable();
+        let is_placed = |id: u64| placed.binary_search(&id).is_ok();
+        let held =
+            PoreWater::of(&self.model, &self.points, t).map_or(0.0, |water| water.taken_by(is_placed, &*self.halo));
+        self.points.surface.crossed.removed -= held;
+    }
+
+    /// Anchors surfaces that did not act to what is there now, and puts loads there.
+    fn settle_surfaces(&mut self, idle: &Idle) {
         let (boundary, anchored) = (&self.model.boundary, self.points.anchored());
-        let anchors = self.points.surface.anchors.renewed(boundary, idle, anchored, &*self.halo);
+        let anchors = self.points.surface.anchors.renewed(&self.model.surfaces(), idle, anchored, &*self.halo);
         let places = anchors.places(boundary, anchored, &*self.halo);
         let surface = &mut self.points.surface;
         surface.anchors = anchors;
-        for load in (0..idle.len()).filter(|&load| idle[load]) {
+        for load in (0..idle.loads.len()).filter(|&load| idle.loads[load]) {
             surface.position[load].clone_from(&places.loads[load]);
             surface.pressure[load].clone_from(&places.pressure[load]);
             surface.pressure_rate[load].fill(Vector::zeros());

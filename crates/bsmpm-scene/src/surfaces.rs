@@ -200,33 +200,37 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
         Given::Head(Course(rows)) => Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - base)).collect())),
         other => other.clone(),
     };
-    let drain = |drain: &crate::Drain| {
+    let acts = |what: Acting| case.acts_since(what, t).is_some();
+    let drain = |(number, drain): (usize, &crate::Drain)| {
         if matches!(drain.site, DrainSite::Face(_)) {
             return None;
         }
         let parts = drain.site.lines().into_iter().map(|line| on_line::<K, D>(case, grid, &line));
         let (points, normals) = parts.flat_map(|(points, normals)| points.into_iter().zip(normals)).unzip();
-        Some(Drain { points, normals, given: given(&drain.given) })
+        Some(Drain { points, normals, given: given(&drain.given), acts: acts(Acting::Drain(number)) })
     };
-    let face = |drain: &crate::Drain| match drain.site {
-        DrainSite::Face(Face { axis, upper }) => Some(DrainedFace { axis, upper, given: given(&drain.given) }),
+    let face = |(number, drain): (usize, &crate::Drain)| match drain.site {
+        DrainSite::Face(Face { axis, upper }) => {
+            Some(DrainedFace { axis, upper, given: given(&drain.given), acts: acts(Acting::Drain(number)) })
+        }
         DrainSite::Lines(_) | DrainSite::Circle { .. } | DrainSite::Plate(_) => None,
     };
-    let inflow = |inflow: &crate::Inflow| {
+    let inflow = |(number, inflow): (usize, &crate::Inflow)| {
         let line = match inflow.site {
             Site::Segment { from, to } => Some(LoadedLine::Segment { from, to }),
             Site::Plate(plate) => Some(LoadedLine::Plate(plate)),
             Site::Face(_) => None,
         };
         let (points, normals) = line.map(|line| on_line::<K, D>(case, grid, &line)).unwrap_or_default();
-        Inflow { points, normals, rate: inflow.rate.clone(), runs_off: inflow.runs_off }
+        let acts = acts(Acting::Inflow(number));
+        Inflow { points, normals, rate: inflow.rate.clone(), runs_off: inflow.runs_off, acts }
     };
     Some(bsmpm::water::flow::Flow {
         bulk: flow.bulk,
         soils: flow.soils.iter().map(|soil| soil.as_ref().map(of_ground)).collect(),
-        drains: flow.drains.iter().filter_map(drain).collect(),
-        faces: flow.drains.iter().filter_map(face).collect(),
-        inflows: flow.inflows.iter().map(inflow).collect(),
+        drains: flow.drains.iter().enumerate().filter_map(drain).collect(),
+        faces: flow.drains.iter().enumerate().filter_map(face).collect(),
+        inflows: flow.inflows.iter().enumerate().map(inflow).collect(),
         suction: flow.suction,
         motion: case.water_at(t),
     })

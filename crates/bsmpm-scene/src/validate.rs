@@ -85,7 +85,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     };
     let footing = strip::footing(record, around, report);
     let prescribed = strip::prescribed(record, around, report);
-    let flow = flow::read(record, materials.as_deref(), around, report);
+    let flow = flow::read(record, materials.as_deref(), (around, stages.as_deref()), report);
     let mut rigid = rigid::read_all(record, (around, regime), factor, report);
     let mut tractions = load::tractions(record, around, report);
     let mut point_loads = load::point_loads(record, around, report);

@@ -151,6 +151,15 @@ fn where_water_fills_ground_that_moves_through_lines_they_are_told_of() {
     let strip = format!("{wet}{STRIP}");
     assert_eq!(lines(&strip).0, [vec![6, 10], vec![]]);
     assert!(!loses(&strip), ".2 of a cell");
+    let rubs =
+        |text: &str| lines(text).2.iter().any(|told| told.contains("material.soft has friction and does not drain"));
+    let law = ["model = \"tresca\"", "cohesion = 1e3"];
+    let friction = |angle: u32| {
+        let mohr = strip.replace(law[0], "model = \"mohr-coulomb\"");
+        mohr.replace(law[1], &format!("cohesion = 1e3\n    friction = {angle}"))
+    };
+    assert!(rubs(&friction(25)) && !rubs(&friction(0)) && !rubs(&strip));
+    assert!(!rubs(&friction(25).replace(STRIP, "")), "no line");
     let deeper = strip.replace("[0.0, -0.1]", "[0.0, -0.4]");
     assert!(loses(&deeper));
     let by_hand = "knots = { x = [0, 2, 2, 4, 6, 8], y = [0, 1, 2, 3, 4, 5, 6] }";

@@ -10,6 +10,7 @@ pub mod rigid;
 pub mod strip;
 pub mod surface;
 
+pub use anchor::Idle;
 pub use coulomb::{Contact, ContactReport};
 pub use load::Load;
 pub use rigid::{RigidBody, RigidReport, RigidState};

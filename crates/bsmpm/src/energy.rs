@@ -335,7 +335,8 @@ fn add_water<K: Kinematics<D>, const D: usize>(
     }
     let (Some(before), Some(after)) = (model.still_water(t), model.still_water(t + dt)) else { return };
     let work = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| {
-        let [before, after] = [before, after].map(|water| water.force(points, p).dot(&Vector::from(du)));
+        let follows = model.follows_water(points, p);
+        let [before, after] = [before, after].map(|water| water.force(points, p, follows).dot(&Vector::from(du)));
         [0.5 * (before + after), -0.5 * (after - before)]
     });
     flows.external.extend(work.iter().map(|work| work[0]));

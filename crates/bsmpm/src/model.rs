@@ -16,7 +16,7 @@ use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
 use crate::water::ambient::{Ambient, StillWater};
-use crate::water::flow::Motion;
+use crate::water::flow::{Flow, Motion};
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
@@ -150,6 +150,13 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         Some(StillWater::new(ambient, unit_weight * grown, t))
     }
 
+    /// Whether the mass of point `p` follows the water in its pores: water that flows changes it by itself.
+    pub fn follows_water(&self, points: &Points<D>, p: usize) -> bool {
+        let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());
+        let flows = |flow: &Flow<D>| flow.soils[usize::from(points.material[p])].is_some();
+        points.pore_pressure.is_some() && flow.is_some_and(flows)
+    }
+
     /// The model in a step of the length `dt`, s: another one only where a strength follows the rate.
     pub fn over(&self, dt: f64) -> Cow<'_, Self>
     where
@@ -212,7 +219,8 @@ impl<K, const D: usize> Model<K, D> {
     pub fn surfaces(&self) -> Surfaces<'_, D> {
         let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());
         let water = flow.into_iter().flat_map(|flow| flow.surfaces().map(|(points, _)| points)).collect();
-        Surfaces { boundary: &self.boundary, water }
+        let dry = flow.map_or_else(Vec::new, |flow| flow.soils.iter().map(Option::is_none).collect());
+        Surfaces { boundary: &self.boundary, water, dry }
     }
 
     /// What the nodes' own weights are made of: mass in dynamics.

@@ -202,7 +202,7 @@ impl<const D: usize> Located<D> for Points<D> {
 impl<const D: usize> Points<D> {
     /// The points as surfaces are anchored to them.
     pub fn anchored(&self) -> Anchored<'_, D> {
-        Anchored { id: &self.id, x: &self.x, u: &self.u, F: &self.F }
+        Anchored { id: &self.id, material: &self.material, x: &self.x, u: &self.u, F: &self.F }
     }
 
     /// Stress-free points at rest or with their initial velocity; with `dynamic` they carry velocity and acceleration.

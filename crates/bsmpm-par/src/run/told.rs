@@ -135,14 +135,13 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     pub(super) fn tell_drains(&mut self, accepted: &Accepted) {
         let (Some(water), t) = (&accepted.report.water, accepted.t) else { return };
         let model = &self.simulation.model;
-        let motion = model.water.as_ref().and_then(|water| water.flow.as_ref()).map(|flow| flow.motion);
-        if motion != Some(Motion::Flows) {
-            return;
-        }
+        let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
+        let Some(flow) = flow.filter(|flow| flow.motion == Motion::Flows) else { return };
+        let acts: Vec<bool> = flow.acting().collect();
         let wanted = self.simulation.model.surfaces().water;
         let points: Vec<usize> = wanted.iter().map(|points| points.len()).collect();
         let of_strips = 3 * self.simulation.model.boundary.strips.len();
-        for number in (0..points.len()).filter(|&number| 2 * water.held[number] < points[number]) {
+        for number in (0..points.len()).filter(|&number| acts[number] && 2 * water.held[number] < points[number]) {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
             if self.told_strips.insert(of_strips + number) {
                 self.warn(format!(

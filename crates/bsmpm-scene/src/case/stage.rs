@@ -1,7 +1,7 @@
 //! Stages: which bodies are there when, what acts on them, and which laws they follow.
 
-use super::{Body, Case, Face, MotionPath, NamedMaterial, Support};
-use bsmpm::boundary::Contact;
+use super::{Body, Case, DrainSite, Face, MotionPath, NamedMaterial, Support};
+use bsmpm::boundary::{Contact, Idle};
 use bsmpm::water::flow::Motion;
 use std::ops::Range;
 
@@ -68,6 +68,10 @@ pub enum Acting {
     Load(usize),
     /// The number of a rigid body, in the order of the file.
     Rigid(usize),
+    /// The number of a drain, in the order of the file.
+    Drain(usize),
+    /// The number of an inflow, in the order of the file.
+    Inflow(usize),
 }
 
 /// What is before the first stage, in the place of a stage's name.
@@ -87,7 +91,7 @@ impl Case {
         stage.at <= t + SAME * self.analysis.dt
     }
 
-    /// Since when a strip, a load or a rigid body acts (s, or pseudo-time) once the stages until the time `t` have
+    /// Since when something that stages apply and release acts (s, or pseudo-time) once the stages until the time `t` have
     /// begun; `None` if it does not. What a stage applies before any has released it does not act at the start.
     pub fn acts_since(&self, what: Acting, t: f64) -> Option<f64> {
         let comes_later = self.stages.iter().find_map(|stage| {
@@ -101,11 +105,17 @@ impl Case {
         })
     }
 
-    /// Which loads do not act before a stage that begins at the time `t`: tractions, then point loads.
-    pub fn idle_before(&self, t: f64) -> Vec<bool> {
+    /// What does not act before a stage that begins at the time `t`: tractions, then point loads; drains on surfaces of
+    /// bodies, then inflows.
+    pub fn idle_before(&self, t: f64) -> Idle {
         let before = self.just_before(t);
-        let loads = 0..self.tractions.len() + self.point_loads.len();
-        loads.map(|load| self.acts_since(Acting::Load(load), before).is_none()).collect()
+        let is_idle = |what: Acting| self.acts_since(what, before).is_none();
+        let (drains, inflows) = self.flow.as_ref().map_or((&[][..], 0), |flow| (&flow.drains[..], flow.inflows.len()));
+        let surfaces = (0..drains.len()).filter(|&number| !matches!(drains[number].site, DrainSite::Face(_)));
+        Idle {
+            loads: (0..self.tractions.len() + self.point_loads.len()).map(|load| is_idle(Acting::Load(load))).collect(),
+            water: surfaces.map(Acting::Drain).chain((0..inflows).map(Acting::Inflow)).map(is_idle).collect(),
+        }
     }
 
     /// What the file calls the loads that act in full from the start.

@@ -12,7 +12,7 @@ pub(super) static DRAIN: Table = Table {
     doc: "A surface through which water flows freely, at a pressure that is given: that of the still water unless it \
           says another. A body's surface goes with the material; what is not named lets no water through",
     keys: &[
-        key("name", Name, Optional, "what histories call it"),
+        key("name", Name, Optional, "what histories and stages call it"),
         key(
             "face",
             Choice(Side::WORDS),
@@ -28,8 +28,8 @@ pub(super) static DRAIN: Table = Table {
             "surface",
             Flag,
             Optional,
-            "true: all that is surface of bodies of permeable soil at the start, but for what lies at faces of the grid \
-             that hold it",
+            "true: all that is surface of bodies of permeable soil at the start, or as a stage applies it, but for what \
+             lies at faces of the grid that hold it",
         ),
         key("head", Quantity(In::Length, Range::ANY), Optional, "height to which the water there would rise"),
         key(
@@ -57,7 +57,7 @@ pub(super) static INFLOW: Table = Table {
     header: "[[inflow]]",
     doc: "Water that is put in through a segment of a body's surface (solid: a rectangle or disc), with which it goes",
     keys: &[
-        key("name", Name, Optional, "what it is called where it is told of"),
+        key("name", Name, Optional, "what it is called where it is told of, and by stages"),
         key("from", PLACE, Optional, "one end of the segment at the start"),
         key("to", PLACE, Optional, "the other end"),
         key(

@@ -17,15 +17,21 @@ pub(super) static STAGE: Table = Table {
             "add",
             Names,
             Optional,
-            "names of the bodies that are placed, where and as they are given, without stress; they are absent before",
+            "names of the bodies that are placed, where and as they are given, without stress, and where water flows without \
+             excess pressure; they are absent before",
         ),
         key(
             "apply",
             Names,
             Optional,
-            "names of loads, supports and rigid bodies that act from there on; they do nothing before",
+            "names of loads, supports, rigid bodies, drains and inflows that act from there on; they do nothing before",
         ),
-        key("release", Names, Optional, "names of loads, supports and rigid bodies that act until there"),
+        key(
+            "release",
+            Names,
+            Optional,
+            "names of loads, supports, rigid bodies, drains and inflows that act until there",
+        ),
         key("boundary", Kind::Table(&FACES), Optional, "what faces of the grid do from there on; the others go on"),
         key("materials", Tables(&EXCHANGE), Optional, "laws that bodies follow from there on"),
         key(

@@ -9,7 +9,7 @@ use super::STANDARD_GRAVITY;
 use super::load::{circle, increasing};
 use super::place;
 use super::site::{AroundStrip, places, plate, segment};
-use crate::case::{Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Site, Support};
+use crate::case::{Acting, Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Site, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
@@ -35,7 +35,7 @@ fn drainage(root: &Record, material: &Record) -> Drainage {
 pub(super) fn read(
     root: &Record,
     materials: Option<&[NamedMaterial]>,
-    around: AroundStrip<'_>,
+    (around, stages): (AroundStrip<'_>, Option<&[Stage]>),
     report: &mut Report<'_>,
 ) -> Option<Option<Flow>> {
     let soils: Vec<Option<Option<Soil<3>>>> =
@@ -54,10 +54,23 @@ pub(super) fn read(
         return Some(None);
     }
     let soils: Vec<Option<Soil<3>>> = soils.into_iter().collect::<Option<_>>()?;
-    let ground = Ground { soils: &soils, materials: materials?, around };
-    let read: Vec<Option<Drain>> = root.records("drain").iter().map(|record| drain(record, ground, report)).collect();
+    let (materials, bodies, stages) = (materials?, around.bodies.unwrap_or_default(), stages.unwrap_or_default());
+    let there = |what: Acting| there(what, stages, bodies);
+    let drains = root.records("drain").iter().enumerate();
+    let read: Vec<Option<Drain>> = drains
+        .map(|(number, record)| {
+            let there = &there(Acting::Drain(number));
+            drain(record, Ground { soils: &soils, materials, around, there }, report)
+        })
+        .collect();
     named(root, report);
-    let put: Vec<Option<Inflow>> = root.records("inflow").iter().map(|record| inflow(record, ground, report)).collect();
+    let inflows = root.records("inflow").iter().enumerate();
+    let put: Vec<Option<Inflow>> = inflows
+        .map(|(number, record)| {
+            let there = &there(Acting::Inflow(number));
+            inflow(record, Ground { soils: &soils, materials, around, there }, report)
+        })
+        .collect();
     let (drains, inflows) = (read.into_iter().collect::<Option<_>>()?, put.into_iter().collect::<Option<_>>()?);
     let bulk = root.record("water").filter(|water| water.gives("bulk"));
     let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.number("bulk"))?;
@@ -188,12 +201,25 @@ fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability
     Some(Permeability { along: along.into(), law })
 }
 
-/// What drains and inflows lie at.
+/// The bodies that are there when something begins to act: at the start, or once a stage has applied it.
+fn there(what: Acting, stages: &[Stage], bodies: &[Body]) -> Vec<Body> {
+    let first = stages.iter().position(|stage| stage.switches(what) != [false; 2]);
+    let applied = first.filter(|&first| stages[first].switches(what)[1]);
+    let begun = &stages[..applied.map_or(0, |first| first + 1)];
+    let is_there = |number: &usize| {
+        let comes = |stages: &[Stage]| stages.iter().any(|stage| stage.add.contains(number));
+        (comes(begun) || !comes(stages)) && !begun.iter().any(|stage| stage.remove.contains(number))
+    };
+    (0..bodies.len()).filter(is_there).map(|number| bodies[number].clone()).collect()
+}
+
+/// What a drain or an inflow lies at.
 #[derive(Clone, Copy)]
 struct Ground<'a> {
     soils: &'a [Option<Soil<3>>],
     materials: &'a [NamedMaterial],
     around: AroundStrip<'a>,
+    there: &'a [Body], // when it begins to act
 }
 
 impl Ground<'_> {
@@ -203,8 +229,7 @@ impl Ground<'_> {
 
     /// Bodies of soil that lets water through.
     fn permeable(&self) -> Vec<Body> {
-        let bodies = self.around.bodies.unwrap_or_default();
-        bodies.iter().filter(|body| self.lets_through(body)).cloned().collect()
+        self.there.iter().filter(|body| self.lets_through(body)).cloned().collect()
     }
 
     /// A segment, or of a solid a plate, of the surface of bodies that let water through.
@@ -231,13 +256,17 @@ impl Ground<'_> {
     ) -> Option<()> {
         let (grid, permeable) = (self.around.grid?, self.permeable());
         if let Some(at) = places.find(|at| !place::is_at(&permeable, grid, *at)) {
-            let bodies = self.around.bodies.unwrap_or_default();
-            let under = bodies.iter().find(|body| place::is_at(std::slice::from_ref(*body), grid, at));
+            let under = self.there.iter().find(|body| place::is_at(std::slice::from_ref(*body), grid, at));
+            let comes = place::is_at(self.around.bodies.unwrap_or_default(), grid, at);
             let at = &at[..grid.dims()];
             let message = match under {
                 Some(body) => format!(
                     "the body at {at:?} is of material.{}, which lets no water through: give it a permeability",
                     self.materials[body.material].name
+                ),
+                None if comes => format!(
+                    "no body is at {at:?} when it begins to act, at the start unless a stage applies it: name it, and let the \
+                     stage that places the body apply it"
                 ),
                 None => {
                     format!("no body is at {at:?} at the start; allowed: half a spacing of points from one")
@@ -336,7 +365,7 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
 
 /// The surface of bodies of permeable soil, but for what lies at faces of the grid that hold it.
 fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Vec<[[f64; 2]; 2]>> {
-    let (grid, bodies, boundary) = (ground.around.grid?, ground.around.bodies?, ground.around.boundary?);
+    let (grid, bodies, boundary) = (ground.around.grid?, ground.there, ground.around.boundary?);
     let all: Vec<&Region> = bodies.iter().map(|body| &body.region).collect();
     let (lower, length) = (grid.lower(), [0, 1].map(|axis| grid.axes[axis].length()));
     let is_held = |piece: &[[f64; 2]; 2]| {
@@ -355,7 +384,7 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
         return None;
     }
     let long: f64 = pieces.iter().map(|[p, q]| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
-    let reason = "what is surface of permeable soil at the start; what spills there later is closed";
+    let reason = "what is surface of permeable soil as it begins to act; what spills there later is closed";
     report.note(record.path_of("surface"), format!("{long:.6} m in {} pieces", pieces.len()), reason);
     Some(pieces)
 }

@@ -44,7 +44,7 @@ pub(super) fn read_all(
 /// Something with a name that stages apply and release.
 type Named<'a> = (&'a str, Acting);
 
-/// Strips and loads with names, which are unique, and rigid bodies.
+/// Strips and loads with names, which are unique, rigid bodies, and what water crosses.
 fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
     let strips = root.records("footing").iter().chain(root.records("prescribed")).enumerate();
     let loads = root.records("traction").iter().chain(root.records("point_load")).enumerate();
@@ -60,7 +60,10 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
     }
     let rigid = root.records("rigid").iter().enumerate();
     let rigid = rigid.filter_map(|(number, record)| Some((record.text("name")?, Acting::Rigid(number))));
-    found.into_iter().map(|(name, acting, _)| (name, acting)).chain(rigid).collect()
+    let drains = root.records("drain").iter().zip(0..).map(|(record, number)| (record, Acting::Drain(number)));
+    let inflows = root.records("inflow").iter().zip(0..).map(|(record, number)| (record, Acting::Inflow(number)));
+    let water = drains.chain(inflows).filter_map(|(record, acting)| Some((record.text("name")?, acting)));
+    found.into_iter().map(|(name, acting, _)| (name, acting)).chain(rigid).chain(water).collect()
 }
 
 fn stage(
@@ -112,13 +115,14 @@ fn named<T: Copy>(
         return Some(Vec::new());
     }
     let bodies = ["remove", "add"].contains(&key);
-    let acting = "[[traction]], [[point_load]], [[prescribed]], [[rigid]] or [footing]";
+    let acting = "[[traction]], [[point_load]], [[prescribed]], [[rigid]], [[drain]], [[inflow]] or [footing]";
     let kinds = if bodies { "[[body]]" } else { acting };
     let mut find = |name: &String| {
         let mut all = known.iter().filter(|(other, _)| other == name);
         let found = all.next().map(|(_, what)| (name.clone(), *what));
         if !bodies && all.next().is_some() {
-            record.error(key, format!("a load or support and a [[rigid]] are named \"{}\"", shortened(name)), report);
+            let told = format!("more than one of what a stage may apply is named \"{}\"", shortened(name));
+            record.error(key, told, report);
         }
         if found.is_none() {
             let hint = hint(name, known.iter().map(|(name, _)| *name));
@@ -243,7 +247,7 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             let has_moved = match *what {
                 Acting::Strip(number) => strip::has_moved(case, number, stage.at),
                 Acting::Rigid(number) => rigid::has_moved(&case.rigid[number], stage.at),
-                Acting::Load(_) => false,
+                Acting::Load(_) | Acting::Drain(_) | Acting::Inflow(_) => false,
             };
             if has_moved {
                 let message = format!(
@@ -330,6 +334,7 @@ fn follow(case: &mut Case, lasting: &[Body]) {
         match history.quantity {
             Quantity::Displacement { at }
             | Quantity::PorePressure { at }
+            | Quantity::Pore { at, .. }
             | Quantity::Velocity { at, .. }
             | Quantity::Stress { at, .. } => {
                 history.lasts = place::is_at(lasting, &case.grid, at);

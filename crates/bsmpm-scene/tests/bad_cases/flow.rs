@@ -31,8 +31,6 @@ pub const FLOW: &[Row] = &[
     row("porosity         = 0.6", "porosity = 60", "material.clay.porosity", "0 < porosity < 1"),
     row("porosity = 0.5", "porosity = 0.5\npermeability = 1e-9", "material.tight.permeability", "no meaning").down(1),
     row("drainage = \"undrained\"", "drainage = \"drained\"", "material.tight.drainage", "expected one of \"given\""),
-    row("drainage = \"undrained\"\nporosity = 0.5", "drainage = \"given\"", "material.tight", "beside soil in which")
-        .up(6),
     row(
         CLAY,
         "model = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\npreconsolidation = 1e5",
@@ -128,12 +126,35 @@ pub const FLOW: &[Row] = &[
     )
     .down(2),
     row(
-        "[solver]",
-        "[[stage]]\nat = \"1 day\"\nadd = [\"fill\"]\n[solver]",
+        "type   = \"consolidation\"\nend    = \"20 year\"\ndt     = \"1 h\"\ngrowth = 1.2\ndt_max = \"60 d\"",
+        "type = \"dynamic\"\nend = 1.0\ndt = 0.1\n[[stage]]\nat = 0.5\nadd = [\"fill\"]",
         "stage.0.add",
-        "bodies that are placed are not shown",
+        "bodies that are placed while all moves are not shown",
+    )
+    .down(5),
+    row(
+        "[solver]",
+        "[[body]]\nname = \"lift\"\nmaterial = \"clay\"\nbox = { lower = [2.0, 2.0], upper = [4.0, 3.0] }\n\
+         points_per_cell = 3\n[[drain]]\nfrom = [2.5, 3.0]\nto = [4.0, 3.0]\n\
+         [[stage]]\nat = \"1 day\"\nadd = [\"lift\"]\n[solver]",
+        "drain.0.from",
+        "when it begins to act, at the start unless a stage applies it",
+    )
+    .down(6),
+    row(
+        "[solver]",
+        "[[stage]]\nat = \"1 day\"\napply = [\"rai\"]\n[solver]",
+        "stage.0.apply",
+        "[[drain]], [[inflow]] or [footing] with name = \"rai\"; did you mean `rain`?",
     )
     .down(2),
+    row(
+        "[solver]",
+        "[[stage]]\nat = \"1 day\"\nrelease = [\"base\"]\n[[stage]]\nat = \"2 day\"\nrelease = [\"base\"]\n[solver]",
+        "stage.1.release",
+        "base does not act, by a stage before",
+    )
+    .down(5),
     row(
         "[solver]",
         "[[stage]]\nat = \"1 day\"\nstrength_reduction = 1.2\n[solver]",

@@ -73,7 +73,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3\n[[stage]]\nat = 0.5\napply = [\"lid\"]\n[[rigid]]\nname = \"lid\"\n\
          polygon = [[0, 1], [2, 1], [2, 2], [0, 2]]\n[[point_load]]\nname = \"lid\"\nat = [1.0, 0.5]\nforce = [0, -1]",
         "stage.0.apply",
-        "a load or support and a [[rigid]] are named \"lid\"",
+        "more than one of what a stage may apply is named \"lid\"",
     )
     .down(3),
     row(

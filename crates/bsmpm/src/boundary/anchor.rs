@@ -17,6 +17,8 @@ use crate::tensor::{Tensor, Vector};
 pub struct Anchored<'a, const D: usize> {
     /// global ids
     pub id: &'a [u64],
+    /// numbers of the materials
+    pub material: &'a [u16],
     /// m  places now, from the grid's lower corner
     pub x: &'a [Vector<D>],
     /// m  displacements since the start
@@ -25,6 +27,9 @@ pub struct Anchored<'a, const D: usize> {
     pub F: &'a Packed<D, Tensor>,
 }
 
+/// A surface point's place at the start, m, and whether water crosses there.
+type Start<const D: usize> = (Vector<D>, bool);
+
 /// All that has points on surfaces of bodies.
 #[derive(Clone)]
 pub struct Surfaces<'a, const D: usize> {
@@ -32,13 +37,29 @@ pub struct Surfaces<'a, const D: usize> {
     pub boundary: &'a Boundary<D>,
     /// points of every drain, then of every inflow of water
     pub water: Vec<&'a [SurfacePoint<D>]>,
+    /// by the material's number: whether no water flows in it, and none of those is anchored to it
+    pub dry: Vec<bool>,
 }
 
 impl<const D: usize> Surfaces<'_, D> {
-    /// Places of all surface points of water at the start, m.
-    fn starts_of_water(&self) -> impl Iterator<Item = Vector<D>> {
-        self.water.iter().copied().flatten().map(|point| point.x)
+    /// All surface points of water at the start.
+    fn starts_of_water(&self) -> impl Iterator<Item = Start<D>> {
+        self.water.iter().copied().flatten().map(|point| (point.x, true))
     }
+
+    /// All those of strips, then those of loads.
+    fn starts_of_boundary(&self) -> impl Iterator<Item = Start<D>> {
+        starts(self.boundary).into_iter().map(|x| (x, false))
+    }
+}
+
+/// Which surfaces have not acted yet, and may be on what comes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Idle {
+    /// loads
+    pub loads: Vec<bool>,
+    /// every drain's surface, then every inflow's
+    pub water: Vec<bool>,
 }
 
 /// Places of the material now, m.
@@ -62,12 +83,12 @@ impl Anchors {
     ) -> Self {
         let boundary = surfaces.boundary;
         let found = [!(carried.strips.is_empty() && carried.loads.is_empty()), !carried.water.is_empty()];
-        let mut starts = if found[0] { Vec::new() } else { starts(boundary) };
+        let mut starts: Vec<Start<D>> = surfaces.starts_of_boundary().filter(|_| !found[0]).collect();
         starts.extend(surfaces.starts_of_water().filter(|_| !found[1]));
         if starts.is_empty() {
             return carried.clone();
         }
-        let mut ids = nearest(&starts, points, halo).into_iter();
+        let mut ids = nearest((&starts, &surfaces.dry), points, halo).into_iter();
         let mut take = |count: usize| ids.by_ref().take(count).collect::<Vec<u64>>();
         let mut anchors = carried.clone();
         if !found[0] {
@@ -90,30 +111,35 @@ impl Anchors {
         halo: &dyn Halo,
     ) -> Self {
         let mut anchors = self.clone();
-        let held = anchors.strips.iter_mut().chain(&mut anchors.loads).flatten().zip(starts(surfaces.boundary));
+        let held = anchors.strips.iter_mut().chain(&mut anchors.loads).flatten().zip(surfaces.starts_of_boundary());
         let wet = anchors.water.iter_mut().flatten().zip(surfaces.starts_of_water());
-        let (mut lost, places): (Vec<&mut u64>, Vec<Vector<D>>) = held.chain(wet).filter(|(id, _)| gone(**id)).unzip();
+        let (mut lost, places): (Vec<&mut u64>, Vec<Start<D>>) = held.chain(wet).filter(|(id, _)| gone(**id)).unzip();
         if !lost.is_empty() {
-            lost.iter_mut().zip(nearest(&places, points, halo)).for_each(|(id, found)| **id = found);
+            lost.iter_mut().zip(nearest((&places, &surfaces.dry), points, halo)).for_each(|(id, found)| **id = found);
         }
         anchors
     }
 
-    /// The anchors with those of the loads that are `idle` replaced by the points nearest to their start of all that
+    /// The anchors with those of the surfaces that are `idle` replaced by the points nearest to their start of all that
     /// are there. Two reductions if there are such.
     pub fn renewed<const D: usize>(
         &self,
-        boundary: &Boundary<D>,
-        idle: &[bool],
+        surfaces: &Surfaces<'_, D>,
+        idle: &Idle,
         points: Anchored<'_, D>,
         halo: &dyn Halo,
     ) -> Self {
-        let (mut anchors, loads) = (self.clone(), boundary.loads.iter().zip(idle));
-        let places: Vec<Vector<D>> =
-            loads.filter(|(_, idle)| **idle).flat_map(|(load, _)| &load.points).map(|point| point.x).collect();
+        let mut anchors = self.clone();
+        let loads = surfaces.boundary.loads.iter().map(|load| (&load.points[..], false)).zip(&idle.loads);
+        // Before a first step nothing is anchored yet.
+        let water = surfaces.water.iter().map(|points| (*points, true)).zip(&idle.water).take(anchors.water.len());
+        let lost = loads.chain(water).filter(|(_, idle)| **idle);
+        let places = lost.flat_map(|((points, wet), _)| points.iter().map(move |point| (point.x, wet)));
+        let places: Vec<Start<D>> = places.collect();
         if !places.is_empty() {
-            let renewed = anchors.loads.iter_mut().zip(idle).filter(|(_, idle)| **idle).flat_map(|(ids, _)| ids);
-            renewed.zip(nearest(&places, points, halo)).for_each(|(id, found)| *id = found);
+            let all = anchors.loads.iter_mut().zip(&idle.loads).chain(anchors.water.iter_mut().zip(&idle.water));
+            let renewed = all.filter(|(_, idle)| **idle).flat_map(|(ids, _)| ids);
+            renewed.zip(nearest((&places, &surfaces.dry), points, halo)).for_each(|(id, found)| *id = found);
         }
         anchors
     }
@@ -231,14 +257,16 @@ fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
     strips.chain(boundary.loads.iter().flat_map(|load| &load.points)).map(|point| point.x).collect()
 }
 
-/// Ids of the points that were nearest to places at the start; of equally near ones the smallest.
-fn nearest<const D: usize>(at: &[Vector<D>], points: Anchored<'_, D>, halo: &dyn Halo) -> Vec<u64> {
+/// Ids of the points that were nearest to places at the start; of equally near ones the smallest. Where water crosses,
+/// of those whose material is not `dry`.
+fn nearest<const D: usize>((at, dry): (&[Start<D>], &[bool]), points: Anchored<'_, D>, halo: &dyn Halo) -> Vec<u64> {
     let start = |p: usize| points.x[p] - points.u[p];
     let mut least = vec![f64::INFINITY; at.len()];
     let mut ids = vec![u64::MAX; at.len()];
     for p in 0..points.id.len() {
         let start = start(p);
-        for (k, at) in at.iter().enumerate() {
+        let is_dry = dry.get(usize::from(points.material[p])) == Some(&true);
+        for (k, (at, _)) in at.iter().enumerate().filter(|(_, (_, wet))| !(*wet && is_dry)) {
             let distance = (start - at).norm_squared();
             if (distance, points.id[p]) < (least[k], ids[k]) {
                 (least[k], ids[k]) = (distance, points.id[p]);

@@ -96,9 +96,9 @@ impl<'a> StillWater<'a> {
         table.map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(0.0))
     }
 
-    /// N  force of the water on point `p`: -J V0 grad p_a, and, where no water flows, what the water weighs that its
-    /// pores have taken up or given off, which the point's mass does not know then. Nothing above the water table.
-    pub fn force<const D: usize>(&self, points: &Points<D>, p: usize) -> Vector<D> {
+    /// N  force of the water on point `p`: -J V0 grad p_a, and, unless its mass `follows`, what the water weighs that
+    /// its pores have taken up or given off. Nothing above the water table.
+    pub fn force<const D: usize>(&self, points: &Points<D>, p: usize, follows: bool) -> Vector<D> {
         let (x, volume) = (&points.x[p], points.volume[p]);
         let mut force = Vector::zeros();
         if let Some((height, slope)) = self.ambient.table(x[0], self.t)
@@ -107,8 +107,7 @@ impl<'a> StillWater<'a> {
             if slope != 0.0 {
                 force[0] = -self.unit_weight * slope * volume * points.F.at(p).determinant();
             }
-            // Water that flows changes the mass of the points by itself.
-            let weighed = if points.pore_pressure.is_some() { points.F.at(p).determinant() } else { 1.0 };
+            let weighed = if follows { points.F.at(p).determinant() } else { 1.0 };
             force[D - 1] = self.unit_weight * volume * weighed;
         }
         force
@@ -147,7 +146,7 @@ mod tests {
         let seed = Seed { id: 0, material: 0, x, volume: 0.25, mass: 0.25 * 20.0 / 9.81, v };
         let points = Points::<2>::from_seeds([seed], false);
         let weight = Vector::<2>::new(0.0, -9.81) * points.mass[0];
-        let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, 0);
+        let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, 0, false);
         let (down, into) = (Vector::<2>::new(-beta.cos(), -beta.sin()), Vector::<2>::new(beta.sin(), -beta.cos()));
         let factor = phi.tan() * acts.dot(&into) / acts.dot(&down);
         assert!((factor - 0.8552).abs() < 5e-5, "{factor}");

@@ -89,8 +89,11 @@ impl Drainage {
         let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo).water;
         let mut places = places(flow, points, &anchors, halo).into_iter();
         let mut outlets = Vec::new();
-        for (surface, (starts, _)) in flow.surfaces().enumerate() {
+        for ((surface, (starts, _)), acts) in flow.surfaces().enumerate().zip(flow.acting()) {
             let here: Vec<Place<D>> = places.by_ref().take(starts.len()).collect();
+            if !acts {
+                continue;
+            }
             let tight = here.iter().filter(|place| !place.drained).count();
             if tight > 0 {
                 return Err(StepError::Undrained { drain: surface, points: tight });

@@ -42,10 +42,16 @@ impl<const D: usize> Flow<D> {
         drains.chain(self.inflows.iter().map(|inflow| (&inflow.points[..], &inflow.normals[..])))
     }
 
+    /// Which of those water crosses now.
+    pub fn acting(&self) -> impl Iterator<Item = bool> {
+        let drains = self.drains.iter().map(|drain| drain.acts);
+        drains.chain(self.inflows.iter().map(|inflow| inflow.acts))
+    }
+
     /// Whether a surface lets water through one way only.
     pub fn is_one_way(&self) -> bool {
-        let seeps = |drain: &Drain<D>| drain.given == Given::Seepage;
-        self.drains.iter().any(seeps) || self.inflows.iter().any(|inflow| inflow.runs_off)
+        let seeps = |drain: &Drain<D>| drain.acts && drain.given == Given::Seepage;
+        self.drains.iter().any(seeps) || self.inflows.iter().any(|inflow| inflow.acts && inflow.runs_off)
     }
 
     /// m  the largest suction head at which air enters a soil
@@ -156,6 +162,8 @@ pub struct Drain<const D: usize> {
     pub normals: Vec<Vector<D>>,
     /// the pressure there
     pub given: Given,
+    /// whether water crosses it now
+    pub acts: bool,
 }
 
 /// A drained face of the grid.
@@ -167,6 +175,8 @@ pub struct DrainedFace {
     pub upper: bool,
     /// the pressure there
     pub given: Given,
+    /// whether water crosses it now
+    pub acts: bool,
 }
 
 /// A surface through which water is put in.
@@ -180,4 +190,6 @@ pub struct Inflow<const D: usize> {
     pub rate: Course,
     /// no more than the ground takes without pressure at its surface: what is left runs off (rain)
     pub runs_off: bool,
+    /// whether water crosses it now
+    pub acts: bool,
 }

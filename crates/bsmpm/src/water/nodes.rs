@@ -218,7 +218,7 @@ impl<const D: usize> Wet<D> {
 
 /// Puts the pressures that faces of the grid have in the place of their nodes.
 fn given<const D: usize>(grid: &Grid<D>, (water, flow): (&Water<D>, &Flow<D>), t: f64, prescribed: &mut [Option<f64>]) {
-    for face in &flow.faces {
+    for face in flow.faces.iter().filter(|face| face.acts) {
         for node in face_functions(grid, face.axis, face.upper) {
             let number = grid.node_at(node);
             // One function more than there are of degree q - 1 has the last node's number.

@@ -11,6 +11,7 @@ use crate::step::problem::Problem;
 use crate::step::trial::Trial;
 use crate::tensor::Vector;
 use crate::water::crossed::Crossed;
+use crate::water::flow::DrainedFace;
 use crate::water::nodes::{Pores, face_functions};
 use crate::water::residual::Flowing;
 
@@ -39,12 +40,13 @@ impl WaterReport {
         let flow = model.water.as_ref()?.flow.as_ref()?;
         let owned = halo.owned();
         let mut counted = vec![false; water.out.len()];
-        let of_face = |(axis, upper): (usize, bool)| -> Exact {
-            let mine = face_functions(&model.grid, axis, upper).into_iter().filter(|&node| owned.contains(node));
+        let of_face = |face: &DrainedFace| -> Exact {
+            let nodes = if face.acts { face_functions(&model.grid, face.axis, face.upper) } else { Vec::new() };
+            let mine = nodes.into_iter().filter(|&node| owned.contains(node));
             mine.filter(|&node| !std::mem::replace(&mut counted[node], true)).map(|node| water.out[node]).collect()
         };
         // The face that is named last decides a pressure of two.
-        let sums: Vec<Exact> = flow.faces.iter().rev().map(|face| (face.axis, face.upper)).map(of_face).collect();
+        let sums: Vec<Exact> = flow.faces.iter().rev().map(of_face).collect();
         let mut faces = halo.total(&sums);
         faces.reverse();
         let [drains, inflows] = pores.drainage.report(&found.p, halo);

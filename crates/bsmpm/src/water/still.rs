@@ -1,9 +1,11 @@
 //! Still water as flow sees it: its pressure, its gradient, and what drives water of this weight against it.
 
 use crate::model::Model;
+use crate::points::Points;
 use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::ambient::Ambient;
+use crate::water::flow::Flow;
 
 /// m/s2  by which a weight is a mass, where a model has no gravity
 const GRAVITY: f64 = 9.81;
@@ -23,8 +25,31 @@ impl<const D: usize> Water<D> {
     /// Pa  excess pressure at the place `x` before the first step: none, but where the suction above the level has its
     /// limit
     pub fn excess_at_start(&self, x: &Vector<D>) -> f64 {
+        self.excess_at_rest(x, 0.0)
+    }
+
+    /// Pa  the same of ground that comes at time `t`
+    fn excess_at_rest(&self, x: &Vector<D>, t: f64) -> f64 {
         let Some(flow) = self.flow.as_ref().filter(|flow| flow.retains()) else { return 0.0 };
-        (-flow.suction - self.still_pressure(x, 0.0)).max(0.0)
+        (-flow.suction - self.still_pressure(x, t)).max(0.0)
+    }
+
+    /// Gives the points from `first` on, which are placed at time `t`, the water that ground has before the first step:
+    /// without excess, at the level of that time.
+    pub fn fill(&self, points: &mut Points<D>, first: usize, t: f64) {
+        for p in first..points.len() {
+            let x = points.x[p];
+            let flows = |flow: &Flow<D>| flow.soils[usize::from(points.material[p])].is_some();
+            if !self.flow.as_ref().is_some_and(flows) {
+                continue;
+            }
+            if let Some(excess) = &mut points.pore_pressure {
+                excess[p] = self.excess_at_rest(&x, t);
+            }
+            if let Some(gradient) = &mut points.pressure_gradient {
+                gradient[p] = self.still_gradient(&x, t);
+            }
+        }
     }
 
     /// Pa/m  its gradient

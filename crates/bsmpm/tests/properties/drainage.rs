@@ -51,9 +51,15 @@ fn scene(order: usize, law: PermeabilityLaw, [from, to]: [Vector<2>; 2], given: 
     let flow = Flow {
         bulk: f64::INFINITY,
         soils: vec![Some(soil(law))],
-        drains: vec![Drain { points: points.clone(), normals: normals.clone(), given }],
+        drains: vec![Drain { points: points.clone(), normals: normals.clone(), given, acts: true }],
         faces: Vec::new(),
-        inflows: vec![Inflow { points, normals, rate: Course(vec![(0.0, 2e-7), (2.0 * DT, 4e-7)]), runs_off: false }],
+        inflows: vec![Inflow {
+            points,
+            normals,
+            rate: Course(vec![(0.0, 2e-7), (2.0 * DT, 4e-7)]),
+            runs_off: false,
+            acts: true,
+        }],
         suction: 0.0,
         motion: Motion::Flows,
     };

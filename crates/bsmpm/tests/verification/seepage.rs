@@ -72,12 +72,12 @@ fn ring(fineness: usize, inner: Option<f64>) -> Plane {
     let permeability = Some(Permeability { along: at(K, K), law: PermeabilityLaw::Constant });
     let drain = |radius: f64, given| {
         let (points, normals) = arc(radius, fineness);
-        Drain { points, normals, given }
+        Drain { points, normals, given, acts: true }
     };
     let fixed = |value: f64| Course(vec![(0.0, value)]);
     let inflow = || {
         let (points, normals) = arc(0.5, fineness);
-        Inflow { points, normals, rate: fixed(1e-6), runs_off: false }
+        Inflow { points, normals, rate: fixed(1e-6), runs_off: false, acts: true }
     };
     let mut drains = vec![drain(2.0, Given::StillWater)];
     drains.extend(inner.map(|pressure| drain(0.5, Given::Pressure(fixed(pressure)))));

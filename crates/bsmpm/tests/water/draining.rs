@@ -146,7 +146,7 @@ fn a_disc_that_is_pressed_on_its_drained_rim_follows_its_closed_form() {
         assert!((disc.pressure(0.0, T) - middle).abs() < 2e-6, "the closed form itself");
     }
     let (points, normals) = arc(1.0, 0.1);
-    let drain = Drain { points: points.clone(), normals: normals.clone(), given: Given::StillWater };
+    let drain = Drain { points: points.clone(), normals: normals.clone(), given: Given::StillWater, acts: true };
     let traction = normals.iter().map(|normal| normal * -LOAD).collect();
     let load = Load { traction, ..Load::dead(points, at(0.0, 0.0), 0.0) };
     let mut scene = quarter(10, [0.0, 1.0], vec![drain]).load(load);
@@ -172,7 +172,7 @@ fn water_flows_through_a_ring_between_its_drained_arcs() {
     let head = |height: f64| Given::Pressure(Course(vec![(0.0, height * LOAD)]));
     let drain = |radius: f64, given: Given| {
         let (points, normals) = arc(radius, 1.0 / 8.0);
-        Drain { points, normals, given }
+        Drain { points, normals, given, acts: true }
     };
     let mut scene = quarter(8, [0.5, 2.0], vec![drain(0.5, head(1.0)), drain(2.0, head(0.0))]);
     let mut rates = [0.0; 2];

@@ -45,7 +45,7 @@ fn block(cells: usize, nu: f64) -> Plane {
         .support(Support::roller(1, true));
     let mut water = flowing(PermeabilityLaw::Constant);
     let flow = water.flow.as_mut().expect("it flows");
-    flow.faces.push(DrainedFace { axis: 0, upper: true, given: Given::StillWater });
+    flow.faces.push(DrainedFace { axis: 0, upper: true, given: Given::StillWater, acts: true });
     flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along =
         at(1.0, 1.0) * (WEIGHT / modulus(nu));
     scene.model.water = Some(water);

@@ -76,7 +76,7 @@ pub fn column(cells: usize, cut: f64, load: f64, law: PermeabilityLaw) -> Plane 
     let flow = water.flow.as_mut().expect("it flows");
     if is_cut {
         let normals = vec![at(0.0, 1.0); 3];
-        flow.drains.push(Drain { points: surface.clone(), normals, given: Given::StillWater });
+        flow.drains.push(Drain { points: surface.clone(), normals, given: Given::StillWater, acts: true });
         let top = cells as f64 - 1.0;
         // Rows of points that follow the surface: those of the cut cell fill its height.
         let (mut x, mut volume) = (scene.points.x.clone(), scene.points.volume.clone());
@@ -88,7 +88,7 @@ pub fn column(cells: usize, cut: f64, load: f64, law: PermeabilityLaw) -> Plane 
         }
         (scene.points.x, scene.points.volume) = (x, volume);
     } else {
-        flow.faces.push(DrainedFace { axis: 1, upper: true, given: Given::StillWater });
+        flow.faces.push(DrainedFace { axis: 1, upper: true, given: Given::StillWater, acts: true });
     }
     scene.model.water = Some(water);
     if load > 0.0 {

@@ -54,14 +54,19 @@ fn wet<K: Kinematics<D>, const D: usize>(
     let permeability =
         Permeability { along: Vector::from_fn(|k, _| 0.02 * (k + 1) as f64), law: PermeabilityLaw::KozenyCarman };
     let soil = Soil { porosity: 0.4, permeability: Some(permeability), retention };
-    let drain = |height: f64, given: Given| Drain { points: side(height), normals: normals.clone(), given };
+    let drain = |height: f64, given: Given| Drain { points: side(height), normals: normals.clone(), given, acts: true };
     let rate = Course(vec![(0.0, 0.3)]);
-    let inflow = Inflow { points: side(1.3), normals: normals.clone(), rate, runs_off: true };
+    let inflow = Inflow { points: side(1.3), normals: normals.clone(), rate, runs_off: true, acts: true };
     let flow = Flow {
         bulk: 3000.0,
         soils: vec![Some(soil)],
         drains: vec![drain(0.3, Given::StillWater), drain(0.8, Given::Seepage), drain(1.8, Given::Seepage)],
-        faces: vec![DrainedFace { axis: 0, upper: false, given: Given::Pressure(Course(vec![(0.0, 5.0)])) }],
+        faces: vec![DrainedFace {
+            axis: 0,
+            upper: false,
+            given: Given::Pressure(Course(vec![(0.0, 5.0)])),
+            acts: true,
+        }],
         inflows: vec![inflow],
         suction: 0.0,
         motion: Motion::Flows,
@@ -153,7 +158,7 @@ fn loaded(nonlinear: Nonlinear, method: Stabilisation, load: f64, law: Permeabil
         .stabilised(method);
     let mut water = flowing(law);
     let flow = water.flow.as_mut().expect("it flows");
-    flow.faces.push(DrainedFace { axis: 1, upper: true, given: Given::StillWater });
+    flow.faces.push(DrainedFace { axis: 1, upper: true, given: Given::StillWater, acts: true });
     flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along *= 0.1;
     scene.model.water = Some(water);
     scene.model.nonlinear = nonlinear;

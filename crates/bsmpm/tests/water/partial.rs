@@ -78,8 +78,13 @@ fn column(cells: usize, rate: f64, runs_off: bool) -> Plane {
     let points = edge(at(0.0, 1.0), at(1.0, 0.0), 1, h);
     let normals = vec![at(0.0, 1.0); points.len()];
     let flow = flow(&mut scene);
-    flow.faces.push(DrainedFace { axis: 1, upper: false, given: Given::Pressure(Course(vec![(0.0, 0.0)])) });
-    flow.inflows.push(Inflow { points, normals, rate: Course(vec![(0.0, rate)]), runs_off });
+    flow.faces.push(DrainedFace {
+        axis: 1,
+        upper: false,
+        given: Given::Pressure(Course(vec![(0.0, 0.0)])),
+        acts: true,
+    });
+    flow.inflows.push(Inflow { points, normals, rate: Course(vec![(0.0, rate)]), runs_off, acts: true });
     // Hydrostatic suction to begin with.
     scene.points.pore_pressure = Some(scene.points.x.iter().map(|x| -WEIGHT * x[1]).collect());
     scene
@@ -253,7 +258,7 @@ fn a_dam_lets_through_what_dupuit_says() {
         let below = cells / 4;
         let drain = |x: f64, y: f64, cells: usize, given: Given| {
             let points = edge(at(x, y), at(0.0, 1.0), cells, h);
-            Drain { normals: vec![at(1.0, 0.0); points.len()], points, given }
+            Drain { normals: vec![at(1.0, 0.0); points.len()], points, given, acts: true }
         };
         let head = |height: f64| Given::Head(Course(vec![(0.0, height)]));
         flow(&mut scene).drains = vec![

@@ -1,6 +1,6 @@
 //! What is not shown to be right together with water that flows, and what is doubtful with it.
 
-use crate::case::{Body, Case, Drain, DrainSite, Face, Flow, Initial, Site, Stage, Support};
+use crate::case::{Acting, Body, Case, Drain, DrainSite, Face, Flow, Initial, Site, Stage, Support};
 use crate::grid::GridAxis;
 use crate::record::Record;
 use crate::report::Report;
@@ -125,12 +125,11 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
     let named = root.named("material").iter().enumerate().filter(|(number, _)| made(*number));
     for (number, (name, record)) in named {
         let Some(law) = record.word::<LawName>("model") else { continue };
-        if flow.soils[number].is_none() {
-            let message = format!(
-                "material.{name} has drainage = \"given\" beside soil in which water flows: what crosses between them is not \
-                 shown to be right; make it \"coupled\", of a high permeability"
-            );
-            report.error(record.origin, &record.path, message);
+        if flow.soils[number].is_none() && !drains_where_they_meet(case, flow, number) {
+            report.warn(format!(
+                "material.{name}: drainage = \"given\" beside soil in which water flows: nothing crosses from that soil into it \
+                 but through a [[drain]] where they meet, and there is none"
+            ));
         }
         let why = match law {
             LawName::SensitiveClay => "is a law of clay without drainage, of total stress",
@@ -162,14 +161,16 @@ fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report
     {
         report.warn(format!(
             "stage.{number}.remove: what is laid bare lets no water through, as the ground's surface without a drain; a [[drain]] \
-             along it drains it, from the start of the run on"
+             along it drains it, from the start of the run on, or as the stage applies it"
         ));
     }
-    let changes = [
-        ("add", "bodies that are placed are"),
-        ("boundary", "faces that change are"),
-        ("strength_reduction", "strength that changes while water flows is"),
-    ];
+    if record.gives("add") && case.analysis.regime != Regime::QuasiStatic {
+        record.error("add", not_shown("bodies that are placed while all moves are"), report);
+    } else if let Some(stage) = case.stages.get(number) {
+        placed(case, (number, stage), report);
+    }
+    let changes =
+        [("boundary", "faces that change are"), ("strength_reduction", "strength that changes while water flows is")];
     for (key, what) in changes.into_iter().filter(|(key, _)| record.gives(key)) {
         record.error(key, not_shown(what), report);
     }
@@ -180,15 +181,58 @@ fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report
     }
 }
 
+/// What a stage places, and what that covers.
+fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) {
+    let Some(flow) = &case.flow else { return };
+    let soil = |body: &usize| flow.soils[case.bodies[*body].material].as_ref();
+    let acts = |drain: usize, t: f64| case.acts_since(Acting::Drain(drain), t).is_some();
+    for body in stage.add.iter().filter(|body| soil(body).is_some_and(|soil| soil.permeability.is_some())) {
+        let drains = |(drain, of): (usize, &Drain)| {
+            acts(drain, stage.at) && places(of, case).iter().any(|at| is_beside(case, at, |other| other == *body))
+        };
+        if !flow.drains.iter().enumerate().any(drains) {
+            report.warn(format!(
+                "stage.{number}.add: there is no drain on body.{body}: its surface lets no water through; a [[drain]] along it \
+                 drains it, which the stage applies"
+            ));
+        }
+    }
+    let covers = |at: &[f64; 3]| {
+        let comes = |body: usize| stage.add.contains(&body) && soil(&body).is_some();
+        let was = |body: usize| case.is_there(body, case.just_before(stage.at));
+        is_beside(case, at, comes) && is_beside(case, at, was)
+    };
+    for (drain, of) in flow.drains.iter().enumerate() {
+        let stays = [case.just_before(stage.at), stage.at].into_iter().all(|t| acts(drain, t));
+        if stays && places(of, case).iter().any(covers) {
+            report.warn(format!(
+                "stage.{number}.add: drain.{drain} goes on draining under what is placed, as a blanket does: where there is \
+                 none, let the stage release it and apply others"
+            ));
+        }
+    }
+}
+
+/// Whether a body that is `wanted`, by its number, is at a place.
+fn is_beside(case: &Case, at: &[f64; 3], wanted: impl Fn(usize) -> bool) -> bool {
+    let mut bodies = case.bodies.iter().enumerate().filter(|(number, _)| wanted(*number));
+    bodies.any(|(_, body)| place::is_at(std::slice::from_ref(body), &case.grid, *at))
+}
+
 /// Whether a drain lies between what a stage removes and what stays.
 fn drains_what_is_bare(case: &Case, stage: &Stage) -> bool {
     let is_gone = |number: usize| stage.remove.contains(&number);
-    let beside = |at: &[f64; 3], gone: bool| {
-        let mut bodies = case.bodies.iter().enumerate().filter(|(number, _)| is_gone(*number) == gone);
-        bodies.any(|(_, body)| place::is_at(std::slice::from_ref(body), &case.grid, *at))
-    };
+    let beside = |at: &[f64; 3], gone: bool| is_beside(case, at, |number| is_gone(number) == gone);
     let between = |drain: &Drain| places(drain, case).iter().all(|at| beside(at, true) && beside(at, false));
     case.flow.iter().flat_map(|flow| &flow.drains).any(between)
+}
+
+/// Whether a drain lies between bodies of a material and others through which water flows.
+fn drains_where_they_meet(case: &Case, flow: &Flow, material: usize) -> bool {
+    let of = |number: usize| case.bodies[number].material;
+    let flows = |number: usize| flow.soils[of(number)].as_ref().is_some_and(|soil| soil.permeability.is_some());
+    let between = |at: &[f64; 3]| is_beside(case, at, |number| of(number) == material) && is_beside(case, at, flows);
+    flow.drains.iter().any(|drain| places(drain, case).iter().any(between))
 }
 
 /// What acts on the bodies.
