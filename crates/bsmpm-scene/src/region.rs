@@ -13,7 +13,7 @@ mod surface;
 mod sweep;
 mod volume;
 
-pub(crate) use cells::{CellPlace, RegionPart, of_cell};
+pub(crate) use cells::{CellPlace, Lattice, RegionPart, of_cell};
 pub(crate) use edge::Edge;
 pub(crate) use extent::Extent;
 pub(crate) use raster::Raster;
@@ -27,6 +27,7 @@ pub(crate) use volume::bounds as solid_bounds;
 
 pub use volume::Volume;
 
+use crate::Geometry;
 use crate::grid::{GridAxis, GridSpec};
 use cells::column;
 use std::ops::Range;
@@ -62,6 +63,7 @@ pub struct Outline {
     origin: [f64; 2], // m  the grid's lower corner, from which edges are measured
     edges: Vec<Edge>, // those of shape 0, which is filled, and of the others, which are cut out
     shapes: usize,
+    geometry: Geometry,    // places its points
     bounds: [[f64; 2]; 2], // m  in the case's coordinates
     area: f64,
     tally: CellTally,
@@ -167,11 +169,11 @@ impl Outline {
         edges: Vec<Edge>,
         shapes: usize,
         (bounds, area): ([[f64; 2]; 2], f64),
-        (grid, points_per_cell): (&GridSpec, usize),
+        (grid, geometry, points_per_cell): (&GridSpec, Geometry, usize),
     ) -> Result<Self, String> {
         affordable(&edges, grid, points_per_cell)?;
         let origin = grid.corner();
-        let mut outline = Self { origin, edges, shapes, bounds, area, tally: CellTally::default() };
+        let mut outline = Self { origin, edges, shapes, geometry, bounds, area, tally: CellTally::default() };
         let columns = outline.columns(grid).len();
         if columns > MOST_COLUMNS {
             return Err(format!("it spans {columns} columns of cells; at most {MOST_COLUMNS} are possible"));
@@ -216,7 +218,12 @@ impl Outline {
 
     /// The part of a column of cells.
     pub(crate) fn column(&self, grid: &GridSpec, points_per_cell: usize, i: usize) -> cells::CellColumn {
-        column(&self.edges, self.shapes, (grid, points_per_cell), i)
+        column(&self.edges, self.shapes, (grid, self.lattice(points_per_cell)), i)
+    }
+
+    /// Its points in a cell.
+    pub(crate) fn lattice(&self, points_per_cell: usize) -> Lattice {
+        Lattice { n: points_per_cell, geometry: self.geometry }
     }
 }
 

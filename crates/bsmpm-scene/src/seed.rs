@@ -4,7 +4,7 @@
 use crate::case::{Body, Case};
 use crate::grid::GridSpec;
 use crate::grid::vector;
-use crate::region::{CellPlace, Extent, Outline, Region, RegionPart, Volume, of_cell};
+use crate::region::{CellPlace, Extent, Lattice, Outline, Region, RegionPart, Volume, of_cell};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::points::Seed;
 use bsmpm::tensor::Vector;
@@ -81,8 +81,8 @@ impl Case {
 
 /// Points of all bodies in the cells `columns` along axis 0.
 ///
-/// In every cell a box has `points_per_cell`² points at (i + ½)/n of the part that it covers, each with 1/n² of the
-/// part's area. Of any other shape only those places (i + ½)/n of the whole cell are points that lie inside; each has
+/// In every cell a box has `points_per_cell`² points at (i + ½)/n of the part that it covers, near an axis a little off
+/// these places ([`Kinematics::spread`]), each with 1/n² of the part's area. Of any other shape only those places (i + ½)/n of the whole cell are points that lie inside; each has
 /// what the shape covers of its n-th of the cell along each axis, and the nearest point of the cell has what is covered
 /// around places outside. A cell without a place inside has one point in the covered part. The areas add up to the
 /// body's; where an outline, but not a box, covers less than 1e-9 of a cell, that is left out. In space there are
@@ -137,7 +137,8 @@ fn of_box<'a, K: Kinematics<D>, const D: usize>(
             let cell = (row + (j - up.cells.start)) as u64;
             let count = (body.points_per_cell * body.points_per_cell) as u64;
             let first_id = first_id + cell * count;
-            of_cell(body.points_per_cell, [across.part(i), up.part(j)])
+            let lattice = Lattice { n: body.points_per_cell, geometry: case.geometry };
+            of_cell(lattice, [across.part(i), up.part(j)])
                 .zip(first_id..)
                 .map(move |(place, id)| body.seed::<K, D, 2>(case, id, place))
         })
@@ -163,7 +164,7 @@ fn of_outline<'a, K: Kinematics<D>, const D: usize>(
                 RegionPart::Cut(_, places) => (0..0, places),
             };
             let y = move |j: usize| [grid.axes[1].breakpoint(j), grid.axes[1].breakpoint(j + 1)];
-            whole.flat_map(move |j| of_cell(n, [x, y(j)])).chain(cut)
+            whole.flat_map(move |j| of_cell(outline.lattice(n), [x, y(j)])).chain(cut)
         });
         places.zip(first_id..).map(move |(place, id)| body.seed::<K, D, 2>(case, id, place))
     })

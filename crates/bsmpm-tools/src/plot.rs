@@ -23,6 +23,7 @@ mod space;
 mod surface;
 
 pub use field::FieldName;
+pub use section::Section;
 
 /// What to draw.
 #[derive(Clone, Debug, Args)]
@@ -40,6 +41,10 @@ pub struct PlotArguments {
     /// Ends of the colours, in the unit of the picture, so that runs can be compared [default: from the values]
     #[arg(long, value_name = "MIN,MAX", value_parser = ends, allow_hyphen_values = true)]
     pub range: Option<(f64, f64)>,
+    /// The section of a solid that is drawn, across an axis at a place in m, as y=0.5 [default: across y, in the middle
+    /// of the grid]
+    #[arg(long, value_name = "AXIS=PLACE", value_parser = Section::read)]
+    pub section: Option<Section>,
     /// Points to compare with: a CSV file with columns `time,x,y` (free surface), `time,<history>` or
     /// `penetration,<history>`
     #[arg(long, value_name = "FILE")]
@@ -49,7 +54,7 @@ pub struct PlotArguments {
 impl PlotArguments {
     /// All pictures of a run as its case wants them.
     pub fn of(directory: PathBuf) -> Self {
-        Self { directory, times: Vec::new(), field: None, range: None, reference: None }
+        Self { directory, times: Vec::new(), field: None, range: None, section: None, reference: None }
     }
 }
 
@@ -89,7 +94,7 @@ pub fn draw(arguments: &PlotArguments) -> Result<Vec<String>, Error> {
 }
 
 fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error> {
-    let record = RunRecord::read(&arguments.directory)?;
+    let mut record = RunRecord::read(&arguments.directory)?;
     let reference = arguments.reference.as_deref().map(reference::columns).transpose()?;
     let frames = record.frames(&arguments.times)?;
     let mut names = above::draw(&record, &frames)?;
@@ -99,12 +104,14 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
     for &(field, range) in &coloured {
         names.extend(space::draw(&record, &frames, field, range)?);
     }
-    let (frames, section) = section::of(&record, frames);
+    record.across = arguments.section.map_or(record.across, |section| section.axis);
+    let (frames, section) = section::of(&record, frames, arguments.section)?;
     if !frames.is_empty() {
         for (field, range) in coloured {
             names.extend(body::draw(&record, &frames, field, (range, section))?);
         }
-        if has_surface(&record, reference.as_ref()) {
+        let is_upright = section.is_none_or(|section| section.axis < 2);
+        if is_upright && has_surface(&record, reference.as_ref()) {
             names.push(surface::draw(&record, (&frames, section), reference.as_ref())?);
         }
     }

@@ -24,6 +24,8 @@ pub(crate) struct RunRecord {
     pub directory: PathBuf,
     pub manifest: Manifest,
     pub case: Sketch,
+    /// the axis across the section that pictures of a solid show
+    pub across: usize,
     entries: Vec<Entry>,
     pub history: Option<Columns>,
     pub steps: Option<Columns>,
@@ -36,6 +38,7 @@ impl RunRecord {
         Ok(Self {
             directory: directory.to_owned(),
             case: Sketch::of(&manifest.case.text),
+            across: 1,
             manifest,
             entries: present(read_collection(directory))?.unwrap_or_default(),
             history: present(table::read(&directory.join(HISTORY)))?,
@@ -48,19 +51,20 @@ impl RunRecord {
         self.manifest.case.geometry == "solid"
     }
 
-    /// The axes that pictures show: the one across, and the vertical one.
+    /// The axes that pictures show: the one to the right and the one upwards.
     pub fn plane(&self) -> [usize; 2] {
-        if self.is_solid() { [0, 2] } else { [0, 1] }
+        match self.across {
+            _ if !self.is_solid() => [0, 1],
+            0 => [1, 2],
+            1 => [0, 2],
+            _ => [0, 1],
+        }
     }
 
     /// What they are called, with their unit.
     pub fn axes(&self) -> [(&'static str, &'static str); 2] {
-        let [across, up] = match self.manifest.case.geometry.as_str() {
-            "axisymmetric" => ["r", "y"],
-            "solid" => ["x", "z"],
-            _ => ["x", "y"],
-        };
-        [(across, "m"), (up, "m")]
+        let names = if self.manifest.case.geometry == "axisymmetric" { ["r", "y", "z"] } else { ["x", "y", "z"] };
+        self.plane().map(|axis| (names[axis], "m"))
     }
 
     /// Whether inertia acts: as the case says, else by the unit of time, which a quasi-static analysis does not have.
@@ -248,7 +252,7 @@ mod tests {
         let mut manifest = Manifest::begin("0.1.0", Vec::new(), ManifestCase::new("", "", "", text.to_owned()));
         manifest.grid = Some(GridExtent { lower: vec![0.0; 2], upper: vec![5.0, 11.0], cell: vec![0.1; 2] });
         let (directory, entries) = (PathBuf::new(), Vec::new());
-        RunRecord { directory, manifest, case: Sketch::of(text), entries, history: None, steps: None }
+        RunRecord { directory, manifest, case: Sketch::of(text), across: 1, entries, history: None, steps: None }
     }
 
     #[test]

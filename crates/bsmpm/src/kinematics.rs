@@ -1,5 +1,6 @@
 //! The only place where plane strain, axisymmetry and three dimensions differ: the numbers that a node's function has
-//! in a gradient (G), how they become tensors and back (G, G^T), F-bar's exponent, and what a piece of the grid weighs.
+//! in a gradient (G), how they become tensors and back (G, G^T), F-bar's exponent, what a piece of the grid weighs, and
+//! where points begin in a cell.
 
 mod axisymmetric;
 mod plane_strain;
@@ -70,6 +71,12 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
 
     /// Volume at `x` per m^D of the grid: what volumes and areas are multiplied with. Linear in x.
     fn weight(_x: &Vector<D>) -> f64 {
+        1.0
+    }
+
+    /// By what factor `n` points with equal shares of a part of a cell, m from the grid's lower corner along an axis, are
+    /// farther from its middle than the middles of these shares.
+    fn spread(_axis: usize, _part: [f64; 2], _n: usize) -> f64 {
         1.0
     }
 }

@@ -3,6 +3,7 @@
 use super::edge::Edge;
 use super::reached;
 use super::sweep::{Slice, Window, intervals, solid, sweep};
+use crate::Geometry;
 use crate::grid::GridSpec;
 use std::ops::Range;
 
@@ -61,11 +62,28 @@ impl RegionPart {
     }
 }
 
+/// The points of a cell: how many along each axis, in which geometry.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lattice {
+    pub(crate) n: usize,
+    pub(crate) geometry: Geometry,
+}
+
+impl Lattice {
+    /// Place of point `k` between two ends along axis 0.
+    fn across(self, [lower, upper]: [f64; 2], k: usize) -> f64 {
+        let middle = (k as f64 + 0.5) / self.n as f64;
+        let off = (middle - 0.5) * (self.geometry.spread([lower, upper], self.n) - 1.0);
+        lower + (upper - lower) * (middle + off)
+    }
+}
+
 /// Points of a rectangle that lies in one cell.
-pub(crate) fn of_cell(n: usize, [across, up]: [[f64; 2]; 2]) -> impl Iterator<Item = CellPlace> {
+pub(crate) fn of_cell(lattice: Lattice, [across, up]: [[f64; 2]; 2]) -> impl Iterator<Item = CellPlace> {
+    let n = lattice.n;
     let count = n * n;
     let area = (across[1] - across[0]) * (up[1] - up[0]) / count as f64;
-    (0..count).map(move |k| CellPlace { x: [place(across, k / n, n), place(up, k % n, n)], area })
+    (0..count).map(move |k| CellPlace { x: [lattice.across(across, k / n), place(up, k % n, n)], area })
 }
 
 /// Place of lattice point `k` of `n` between two ends.
@@ -73,8 +91,8 @@ pub(crate) fn place([lower, upper]: [f64; 2], k: usize, n: usize) -> f64 {
     lower + (upper - lower) * ((k as f64 + 0.5) / n as f64)
 }
 
-/// What shape 0 less the others has in column `i` of the grid with `n` points along each axis of a cell.
-pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, n): (&GridSpec, usize), i: usize) -> CellColumn {
+/// What shape 0 less the others has in column `i` of the grid.
+pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, lattice): (&GridSpec, Lattice), i: usize) -> CellColumn {
     let (across, up) = (&grid.axes[0], &grid.axes[1]);
     let x = [across.breakpoint(i), across.breakpoint(i + 1)];
     let near: Vec<Near> = edges.iter().filter_map(|edge| Some(Near { edge: *edge, span: edge.span(x)? })).collect();
@@ -82,7 +100,7 @@ pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, n): (&GridSpec, usize
     if near.is_empty() {
         return column;
     }
-    let strip = CellStrip::new(x, near, shapes, n);
+    let strip = CellStrip::new(x, near, shapes, lattice);
     let mut cut: Vec<Range<usize>> = strip.near.iter().map(|near| reached(up, near.span)).collect();
     cut.sort_by_key(|rows| rows.start);
     let mut next = 0;
@@ -124,6 +142,7 @@ struct CellStrip {
     near: Vec<Near>,
     shapes: usize,
     n: usize,
+    across: Vec<f64>,          // m  the lattice's vertical lines
     lines: Vec<Vec<[f64; 2]>>, // covered parts of the lattice's vertical lines
     middle: Vec<[f64; 2]>,     // of the line in the middle
 }
@@ -149,11 +168,12 @@ impl Sum {
 }
 
 impl CellStrip {
-    fn new(x: [f64; 2], near: Vec<Near>, shapes: usize, n: usize) -> Self {
+    fn new(x: [f64; 2], near: Vec<Near>, shapes: usize, lattice: Lattice) -> Self {
         let at = |x: f64| intervals(near.iter().map(|near| &near.edge), shapes, x);
-        let lines = (0..n).map(|k| at(place(x, k, n))).collect();
+        let across: Vec<f64> = (0..lattice.n).map(|k| lattice.across(x, k)).collect();
+        let lines = across.iter().map(|&x| at(x)).collect();
         let middle = at(0.5 * (x[0] + x[1]));
-        Self { x, near, shapes, n, lines, middle }
+        Self { x, near, shapes, n: lattice.n, across, lines, middle }
     }
 
     /// Points of the cell between two heights, the area that is covered of it, and whether one point stands for all.
@@ -170,7 +190,7 @@ impl CellStrip {
             let edges = self.edges(part(self.x, a, self.n), y[1]);
             for b in 0..self.n {
                 let window = Window { x: part(self.x, a, self.n), y: part(y, b, self.n) };
-                let x = [place(self.x, a, self.n), place(y, b, self.n)];
+                let x = [self.across[a], place(y, b, self.n)];
                 let mut area = self.covered(&edges, &window, &mut sum);
                 let covered = covers(&self.lines[a], x[1]);
                 if area.is_none() {

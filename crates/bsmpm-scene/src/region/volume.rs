@@ -6,6 +6,7 @@ use super::lattice::{self, LINES};
 use super::measure;
 use super::solid::{SolidShape, less, plane};
 use super::{Edge, MOST_WORK, Outline, RegionPart, reached};
+use crate::Geometry;
 use crate::grid::{GridAxis, GridSpec};
 use std::ops::Range;
 
@@ -254,7 +255,7 @@ impl Filling {
             let lower = plane.lower();
             let ends = bounds.map(|corner| corner[along]);
             let bounds = bounds.map(|corner| [corner[across] + lower[0], corner[up] + lower[1]]);
-            let outline = Outline::new(edges, 1 + cut.len(), (bounds, section.area), (&plane, n))?;
+            let outline = Outline::new(edges, 1 + cut.len(), (bounds, section.area), (&plane, Geometry::Solid, n))?;
             return Ok(Self::Prism { outline: Box::new(outline), plane, along, ends });
         }
         let [lower, upper] = bounds;
@@ -352,7 +353,9 @@ fn prism_slab(
 fn section(outline: &Outline, plane: &GridSpec, n: usize, column: usize) -> Vec<CellPlace> {
     let sides = |axis: usize, cell: usize| [plane.axes[axis].breakpoint(cell), plane.axes[axis].breakpoint(cell + 1)];
     let of_part = |part: RegionPart| match part {
-        RegionPart::Whole(rows) => rows.flat_map(|row| of_cell(n, [sides(0, column), sides(1, row)])).collect(),
+        RegionPart::Whole(rows) => {
+            rows.flat_map(|row| of_cell(outline.lattice(n), [sides(0, column), sides(1, row)])).collect()
+        }
         RegionPart::Cut(_, places) => places,
     };
     outline.column(plane, n, column).parts.into_iter().flat_map(of_part).collect()

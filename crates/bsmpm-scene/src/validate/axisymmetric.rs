@@ -1,14 +1,11 @@
 //! What an axisymmetric case must and must not have: the axis is the grid's left face, and nothing moves or acts
 //! sideways that would not do so all around it.
 
-use crate::case::{Body, Case, DrainSite, Face, Geometry, LoadedLine, Support};
+use crate::case::{Case, DrainSite, Face, Geometry, LoadedLine, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Measurement, Side, Word};
-use bsmpm::quadrature::Quadrature;
 
-/// Points along an axis of a cell at r = 0 from which on no more is said.
-const ENOUGH: usize = 3;
 /// The face at the axis.
 const AXIS: Face = Face { axis: 0, upper: false };
 const SIDEWAYS: &str = "x is the radius: nothing has one direction along it all around the axis; allowed: 0 along x";
@@ -22,20 +19,6 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     sideways(case, record, report);
     rigid(case, record, report);
     told(case, record, report);
-    near(case, report);
-}
-
-/// A lattice of points does not integrate u_r / r in the cells at the axis, however small they are.
-fn near(case: &Case, report: &mut Report<'_>) {
-    let few = |body: &&Body| body.points_per_cell < ENOUGH && body.occupied(&case.grid)[0].start == 0;
-    if let Some(body) = case.bodies.iter().find(few).filter(|_| case.solver.quadrature == Quadrature::Points) {
-        report.warn(format!(
-            "points_per_cell = {}: stress in the cells at the axis is off by 10 % with 2 points along an axis, by 5 and 3 % \
-             with 3 and 4, however small the cells are; give 3, or in quasi-static analysis [solver] \
-             quadrature = \"fitted\" (4, 2, 1 %)",
-            body.points_per_cell
-        ));
-    }
 }
 
 /// The grid begins at r = 0, where no displacement leads away from the axis.

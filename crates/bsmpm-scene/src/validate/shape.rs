@@ -72,7 +72,7 @@ pub(super) fn region(
     }
     let shapes = std::iter::once(&whole).chain(&cut).enumerate();
     let edges = shapes.flat_map(|(number, shape)| shape.edges(grid.corner(), number)).collect();
-    match Outline::new(edges, 1 + cut.len(), (whole.bounds(), whole.area()), (grid, points_per_cell?)) {
+    match Outline::new(edges, 1 + cut.len(), (whole.bounds(), whole.area()), (grid, geometry, points_per_cell?)) {
         Ok(outline) => Some(Region::Outline(outline)),
         Err(message) => {
             body.error(key(body), message, report);

@@ -1,5 +1,6 @@
 //! Words of what is solved and of what is kept of it.
 
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 
 choice! {
@@ -27,6 +28,16 @@ impl Geometry {
         match self {
             Self::PlaneStrain | Self::Solid => 1.0,
             Self::Axisymmetric => std::f64::consts::TAU,
+        }
+    }
+
+    /// By what factor `n` points of a part of a cell, m from the grid's lower corner along axis 0, are farther from its
+    /// middle than the middles of equal shares.
+    pub(crate) fn spread(self, part: [f64; 2], n: usize) -> f64 {
+        match self {
+            Self::PlaneStrain => PlaneStrain::spread(0, part, n),
+            Self::Axisymmetric => Axisymmetric::spread(0, part, n),
+            Self::Solid => Solid::spread(0, part, n),
         }
     }
 

@@ -4,6 +4,7 @@ use bsmpm_io::frame::Frame;
 use bsmpm_scene::{Case, Regime};
 
 use super::field::FieldName;
+use super::section::Section;
 use super::{rigid, section};
 use crate::Error;
 use crate::picture::axes::{self, ChartAxes, title};
@@ -24,7 +25,7 @@ pub(super) fn draw(
     record: &RunRecord,
     frames: &[Frame],
     field: FieldName,
-    (wanted, section): (Option<(f64, f64)>, Option<f64>),
+    (wanted, section): (Option<(f64, f64)>, Option<Section>),
 ) -> Result<Vec<String>, Error> {
     let values: Option<Vec<_>> = frames.iter().map(|frame| field.values(frame)).collect();
     let missing = || Error::Missing {
@@ -38,7 +39,7 @@ pub(super) fn draw(
     let mut names = Vec::new();
     for (frame, values) in frames.iter().zip(&values) {
         let name = format!("{}_{}.png", field.name(), short(frame.time));
-        let bar = Bar { range: colours, label: field.label(section.is_some()) };
+        let bar = Bar { range: colours, label: field.label(section.map(|section| section.axis)) };
         picture((record, case.as_ref(), section), frame, values, region, bar).save(&record.directory.join(&name))?;
         names.push(name);
     }
@@ -46,7 +47,7 @@ pub(super) fn draw(
 }
 
 fn picture(
-    (record, case, section): (&RunRecord, Option<&Case>, Option<f64>),
+    (record, case, section): (&RunRecord, Option<&Case>, Option<Section>),
     frame: &Frame,
     values: &[f64],
     region: [(f64, f64); 2],

@@ -13,7 +13,7 @@ const BEYOND: f64 = 0.005;
 pub enum FieldName {
     /// Horizontal Cauchy stress, kPa
     StressXx,
-    /// Vertical Cauchy stress, kPa; of a solid along y, across the section
+    /// Vertical Cauchy stress, kPa; of a solid along y
     StressYy,
     /// Cauchy stress out of the plane, kPa; of a solid the vertical one
     StressZz,
@@ -129,12 +129,14 @@ impl FieldName {
         self.source().field
     }
 
-    /// The label of the colour bar, of a plane or of a solid.
-    pub(super) fn label(self, is_solid: bool) -> (&'static str, &'static str) {
+    /// The label of the colour bar, of a plane or of a section of a solid across an axis.
+    pub(super) fn label(self, across: Option<usize>) -> (&'static str, &'static str) {
         let source = self.source();
-        let quantity = match self {
-            Self::StressYy if is_solid => "Stress σyy across the section",
-            Self::StressZz if is_solid => "Vertical stress σzz",
+        let quantity = match (self, across) {
+            (Self::StressXx, Some(0)) => "Stress σxx across the section",
+            (Self::StressYy, Some(1)) => "Stress σyy across the section",
+            (Self::StressYy, Some(_)) => "Horizontal stress σyy",
+            (Self::StressZz, Some(_)) => "Vertical stress σzz",
             _ => source.quantity,
         };
         (quantity, source.unit)

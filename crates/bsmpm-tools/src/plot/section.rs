@@ -1,33 +1,68 @@
-//! The section of a solid that pictures show: its points near the upright plane halfway from the front to the back.
+//! The section of a solid that pictures show: its points near a plane across an axis, the upright one halfway from the
+//! front to the back unless another is wanted.
 
 use bsmpm_io::frame::{FieldValues, Frame};
 
+use crate::Error;
 use crate::picture::splat;
 use crate::picture::ticks::range;
 use crate::record::{RunRecord, short};
 
-/// The axis across the section.
-const ACROSS: usize = 1;
+const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The frames as sections, with places (x, z), and the y of the section; those of a plane as they are.
-///
-/// The section is in the middle of the grid, or if no point is near in that of the first frame's points, and has the
-/// points that are nearer to it than half a cell.
-pub(super) fn of(record: &RunRecord, frames: Vec<Frame>) -> (Vec<Frame>, Option<f64>) {
-    if !record.is_solid() {
-        return (frames, None);
+/// A plane across an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// the axis that is normal to it
+    pub axis: usize,
+    /// m  its place along the axis
+    pub at: f64,
+}
+
+impl Section {
+    /// As a command line has it, `y=0.5`.
+    pub(super) fn read(text: &str) -> Result<Self, String> {
+        let read = text.split_once('=').and_then(|(axis, at)| {
+            let axis = AXES.iter().position(|name| *name == axis.trim())?;
+            Some(Self { axis, at: at.trim().parse().ok().filter(|at: &f64| at.is_finite())? })
+        });
+        read.ok_or_else(|| "an axis and a place along it in m, e.g. y=0.5".to_owned())
     }
-    let ends = frames.first().and_then(|frame| range(frame.position.iter().map(|point| point[ACROSS])));
-    let Some((low, high)) = ends else { return (frames, None) };
+}
+
+/// The frames as sections, with their places in the plane first, and the section; those of a plane as they are.
+///
+/// The section is the wanted one, else in the middle of the grid along y, or if no point is near in that of the first
+/// frame's points, and has the points that are nearer to it than half a cell. Fails where none is near the wanted one.
+pub(super) fn of(
+    record: &RunRecord,
+    frames: Vec<Frame>,
+    wanted: Option<Section>,
+) -> Result<(Vec<Frame>, Option<Section>), Error> {
+    if !record.is_solid() {
+        let reason = "the run is of a plane: sections are of solids".to_owned();
+        return if wanted.is_some() { Err(Error::Missing { reason }) } else { Ok((frames, None)) };
+    }
+    let across = record.across;
+    let ends = frames.first().and_then(|frame| range(frame.position.iter().map(|point| point[across])));
+    let Some((low, high)) = ends else { return Ok((frames, None)) };
     let of_grid = record.manifest.grid.as_ref().and_then(|grid| {
-        let ends = [&grid.lower, &grid.upper, &grid.cell].map(|of| of.get(ACROSS).copied());
+        let ends = [&grid.lower, &grid.upper, &grid.cell].map(|of| of.get(across).copied());
         Some((0.5 * (ends[0]? + ends[1]?), 0.5 * ends[2]?))
     });
     let (middle, reach) = of_grid.unwrap_or((0.5 * (low + high), 0.5 * (high - low)));
-    let is_near = |point: &[f64; 3]| (point[ACROSS] - middle).abs() <= reach;
-    let middle =
-        if frames.iter().all(|frame| frame.position.iter().any(is_near)) { middle } else { 0.5 * (low + high) };
-    (frames.iter().map(|frame| section(frame, middle, reach)).collect(), Some(middle))
+    let at = wanted.map_or(middle, |wanted| wanted.at);
+    let is_near = |point: &[f64; 3]| (point[across] - at).abs() <= reach;
+    let at = match frames.iter().all(|frame| frame.position.iter().any(is_near)) {
+        true => at,
+        false if wanted.is_some() => {
+            let reason = format!("no point is nearer than {} m to {} = {} m", short(reach), AXES[across], short(at));
+            return Err(Error::Missing { reason });
+        }
+        false => 0.5 * (low + high),
+    };
+    let found = Section { axis: across, at };
+    Ok((frames.iter().map(|frame| section(frame, (found, record.plane()), reach)).collect(), Some(found)))
 }
 
 /// m  how far the material of a solid goes on above its highest points: half of the usual share of one of the vertical,
@@ -45,15 +80,16 @@ pub(super) fn above(record: &RunRecord, frame: &Frame) -> f64 {
 }
 
 /// What a title says of a section.
-pub(super) fn named(section: Option<f64>) -> String {
-    section.map_or_else(String::new, |y| format!(", section at y = {} m", short(y)))
+pub(super) fn named(section: Option<Section>) -> String {
+    section.map_or_else(String::new, |of| format!(", section at {} = {} m", AXES[of.axis], short(of.at)))
 }
 
-fn section(frame: &Frame, middle: f64, reach: f64) -> Frame {
-    let near = |point: &[f64; 3]| (point[ACROSS] - middle).abs() <= reach;
+fn section(frame: &Frame, (of, plane): (Section, [usize; 2]), reach: f64) -> Frame {
+    let near = |point: &[f64; 3]| (point[of.axis] - of.at).abs() <= reach;
     let kept: Vec<usize> = (0..frame.position.len()).filter(|&p| near(&frame.position[p])).collect();
     let mut section = frame.without_points();
-    section.position = kept.iter().map(|&p| frame.position[p]).map(|[x, y, z]| [x, z, y]).collect();
+    section.position =
+        kept.iter().map(|&p| frame.position[p]).map(|x| [x[plane[0]], x[plane[1]], x[of.axis]]).collect();
     for (field, whole) in section.fields.iter_mut().zip(&frame.fields) {
         field.values = match &whole.values {
             FieldValues::F64(values) => FieldValues::F64(taken(values, &kept, whole.components)),
@@ -75,7 +111,9 @@ mod tests {
 
     #[test]
     fn a_section_is_named_by_its_place() {
-        assert_eq!((named(Some(2.0)).as_str(), named(None).as_str()), (", section at y = 2 m", ""));
+        let read = Section::read("x = -2").unwrap();
+        assert_eq!((named(Some(read)).as_str(), named(None).as_str()), (", section at x = -2 m", ""));
+        assert!(["w=1", "x", "x=", "x=inf"].iter().all(|text| Section::read(text).is_err()));
     }
 
     #[test]
@@ -83,7 +121,11 @@ mod tests {
         let position = vec![[1.0, 0.1, 5.0], [2.0, 0.6, 6.0], [3.0, 1.4, 7.0]];
         let ids = Field { name: "id".into(), components: 1, values: FieldValues::U64(vec![4, 5, 6]) };
         let fields = vec![ids, Field::real("v", 3, (0..9).map(f64::from).collect())];
-        let found = section(&Frame { step: 1, time: 2.0, position, fields }, 0.75, 0.25);
+        let across_y = (Section { axis: 1, at: 0.75 }, [0, 2]);
+        let whole = Frame { step: 1, time: 2.0, position, fields };
+        let level = section(&whole, (Section { axis: 2, at: 6.6 }, [0, 1]), 0.5);
+        assert_eq!(level.position, vec![[3.0, 1.4, 7.0]]);
+        let found = section(&whole, across_y, 0.25);
         assert_eq!((found.position, found.time), (vec![[2.0, 6.0, 0.6]], 2.0));
         assert_eq!(found.fields[0].values, FieldValues::U64(vec![5]));
         assert_eq!(found.fields[1].values, FieldValues::F64(vec![3.0, 4.0, 5.0]));

@@ -135,7 +135,7 @@ pub(super) fn draw(
     let mut names = Vec::new();
     for (frame, values) in frames.iter().zip(&values) {
         let name = format!("{}_space_{}.png", field.name(), short(frame.time));
-        let bar = Bar { range, label: field.label(true) };
+        let bar = Bar { range, label: field.label(Some(2)) };
         picture((record, [lower, upper]), frame, values, bar).save(&record.directory.join(&name))?;
         names.push(name);
     }

@@ -4,7 +4,7 @@ use bsmpm_io::frame::Frame;
 use bsmpm_io::table::Columns;
 
 use super::body::{outline, region};
-use super::section;
+use super::section::{self, Section};
 use crate::Error;
 use crate::picture::axes::{BELOW, title};
 use crate::picture::canvas::Canvas;
@@ -25,7 +25,7 @@ const LOWEST: f64 = 0.16;
 /// name.
 pub(super) fn draw(
     record: &RunRecord,
-    (frames, section): (&[Frame], Option<f64>),
+    (frames, section): (&[Frame], Option<Section>),
     reference: Option<&Columns>,
 ) -> Result<String, Error> {
     let reference = reference.map(|table| places(record, frames, table)).unwrap_or_default();

@@ -150,3 +150,30 @@ fn a_free_piston_falls_on_a_round_column_as_on_a_plane_one() {
     }
     assert!(at(&round, "rigid-force-y", 0.06) > 0.0, "it has come down on the soil");
 }
+
+/// Undrained ground under an even load: no more water at the axis than elsewhere, and no dimple in the surface there
+/// (with evenly spaced points 2 kPa of 50 and 5.3e-5 m).
+#[test]
+fn undrained_ground_stays_even_at_the_axis() {
+    let case = r#"
+geometry = "axisymmetric"
+analysis = { type = "consolidation", end = "10 s", steps = 1 }
+grid = { lower = [0, 0], upper = [3, 2.5], cell = 0.25, order = "quadratic" }
+material.soil = { model = "hencky", young = "10 MPa", poisson = 0.3, drainage = "undrained", porosity = 0.5 }
+body = [{ material = "soil", box = { lower = [0, 0], upper = [3, 2] }, points_per_cell = 3 }]
+traction = [{ from = [0, 2], to = [3, 2], stress = [0, "-50 kPa"] }]
+boundary = { left = "roller", right = "roller", bottom = "roller" }
+stabilisation = { method = "consistent-f-bar" }
+output = { every = "10 s" }
+history = [
+    { quantity = "displacement", at = [0, 2], name = "top" },
+    { quantity = "excess-pressure", at = [0.04, 1], name = "axis" },
+]
+"#;
+    let scratch = Scratch::with_case(case);
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "even"]).expect(0);
+    let table = history(&scratch.path("even"));
+    let (water, dimple) = (at(&table, "axis", 10.0), at(&table, "top-y", 10.0));
+    assert!((water / 50e3 - 1.0).abs() <= 1e-3, "{water}");
+    assert!(dimple.abs() <= 1e-5, "{dimple}");
+}

@@ -213,3 +213,23 @@ fn rough_ends_hold_a_slope_up_to_what_a_cylinder_between_them_allows() {
     let most = turns_between_ends(10.0, [10.25, 8.0], 6.25);
     assert!(1.2 * plane < held && held < most, "{plane} {held} {most}");
 }
+
+/// A thick cylinder of clay under pressure inside: the whole wall yields at 2 c ln(b/a).
+#[test]
+fn a_thick_cylinder_has_the_factor_of_its_limit_pressure() {
+    let dir = tempfile::tempdir().unwrap();
+    let clay = r#"material.wall={ model = "tresca", young = "10 GPa", poisson = 0.3, cohesion = "1 kPa" }"#;
+    let set = [
+        clay,
+        "traction.0.stress=[1000, 0]",
+        "grid.cell=0.1",
+        "solver.background=1e-6",
+        "stabilisation.method=consistent-f-bar",
+    ];
+    let range = ((1.0, 2.0), 0.02, None);
+    let (found, _) = of_stage(range, "validation/thick_cylinder.toml", &set, 2, dir.path());
+    let [stable, failed] = ["last_stable", "first_failed"].map(|key| found["factor_of_safety"][key].as_f64().unwrap());
+    let exact = 2.0 * std::f64::consts::LN_2;
+    // 1.386 to 1.406 for 1.3863: the band is .0195 wide, and within its width of the limit.
+    assert!(failed - stable <= 0.0201 && (0.5 * (stable + failed) - exact).abs() <= 0.02, "{stable} {failed}");
+}

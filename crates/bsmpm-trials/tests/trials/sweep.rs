@@ -207,3 +207,26 @@ fn three_grids_tell_an_order_or_why_there_is_none() {
     assert_eq!(rows.iter().filter(|row| row["time"] == 0.01).count(), rows.len() / 2);
     assert_eq!(fs::read_to_string(output.join("verify.csv")).unwrap().lines().count(), rows.len() + 1);
 }
+
+/// A body of revolution: the outer wall of a thick cylinder under pressure, continued from three cells to none (Lamé).
+#[test]
+fn a_sweep_of_a_thick_cylinder_leads_to_its_closed_form() {
+    let bench = Bench::new();
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/validation/thick_cylinder.toml");
+    let (output, solver) = (bench.path("sweep"), bench.path("solver"));
+    let linear = ["traction.0.stress=[1, 0]", "material.wall.young=1 MPa", "solver.background=1e-9"];
+    let set = linear.iter().flat_map(|set| ["--set", set]).collect::<Vec<_>>();
+    let words = [
+        &["sweep", case, "--output", output.to_str().unwrap(), "--vary", "grid.cell=0.1,0.05,0.025"][..],
+        &["--quantity", "outer-x", "--reference", "extrapolated"],
+        &set,
+        &["--", solver.to_str().unwrap()],
+    ];
+    let _turn = processes::turn();
+    sweep::run(&Sweep::parse_from(words.concat()).arguments, |_| ()).unwrap();
+    let found: Value = serde_json::from_str(&fs::read_to_string(output.join("sweep.json")).unwrap()).unwrap();
+    let limit = found["reference"]["values"][0][0].as_f64().unwrap();
+    let (radius, wall, poisson, young) = (0.5_f64, 1.0_f64, 0.3, 1e6);
+    let exact = 2.0 * (1.0 - poisson * poisson) * radius.powi(2) * wall / (young * (wall.powi(2) - radius.powi(2)));
+    assert!((limit / exact - 1.0).abs() <= 1e-5, "{limit:e} {exact:e}"); // 2e-6; .005 % with the smallest cells
+}

@@ -30,7 +30,7 @@ pub struct SurfacePoint<const D: usize> {
 
 /// Points in the middles of `count` equal pieces of every part of a straight segment that the grid's lines cut off;
 /// `from` and `to` in m from the grid's lower corner. With as many pieces as a cell has points across, a load is in
-/// exact balance with uniform stress: the points' quadrature is the same rule.
+/// exact balance with uniform stress: the points' quadrature is the same rule, near an axis too.
 pub fn along<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
     from: &Vector<D>,
@@ -41,10 +41,22 @@ pub fn along<K: Kinematics<D>, const D: usize>(
     let length = (to - from).norm();
     let piece = |part: &[f64], k: usize| {
         let share = (part[1] - part[0]) / count as f64;
-        let x = from + (to - from) * (part[0] + (k as f64 + 0.5) * share);
+        let middle = part[0] + (k as f64 + 0.5) * share;
+        let off = middle - 0.5 * (part[0] + part[1]);
+        let x = from + (to - from) * (middle + off * (spread::<K, D>((from, to), part, count) - 1.0));
         SurfacePoint { x, area: share * length * K::weight(&x) }
     };
     cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
+}
+
+/// [`Kinematics::spread`] of the points of a part of a segment: that along the axis along which they are others than
+/// the middles of equal pieces, if there is one.
+fn spread<K: Kinematics<D>, const D: usize>((from, to): (&Vector<D>, &Vector<D>), part: &[f64], count: usize) -> f64 {
+    let along = |axis: usize| {
+        let [a, b] = [part[0], part[1]].map(|share| from[axis] + (to[axis] - from[axis]) * share);
+        if a == b { 1.0 } else { K::spread(axis, [a.min(b), a.max(b)], count) }
+    };
+    (0..D).map(along).product()
 }
 
 /// Points in the middles of `count` by `count` equal pieces of every part of a rectangle along the axes that the grid's

@@ -92,7 +92,9 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
                 let place = |k: usize| {
                     let (lower, upper) = (knots.breakpoint(k / per_axis), knots.breakpoint(k / per_axis + 1));
                     let length = (upper - lower) / per_axis as f64;
-                    (lower + ((k % per_axis) as f64 + 0.5) * length, length)
+                    let middle = lower + ((k % per_axis) as f64 + 0.5) * length;
+                    let farther = K::spread(axis, [lower, upper], per_axis) - 1.0;
+                    (middle + (middle - 0.5 * (lower + upper)) * farther, length)
                 };
                 (cells[axis].start * per_axis..cells[axis].end * per_axis).map(place).collect()
             })
