@@ -170,6 +170,32 @@ fn where_water_fills_ground_that_moves_through_lines_they_are_told_of() {
     assert!(warnings.iter().any(|told| told.contains("where water flows, without a line there")), "{warnings:?}");
 }
 
+/// Where one of two soils lets much less water through, and meets the other inside a cell, or none at all.
+#[test]
+fn what_is_tight_beside_what_is_not_is_warned_of() {
+    let layers = |height: f64, tight: &str| {
+        format!(
+            "title = \"t\"\ngeometry = \"plane-strain\"\n[analysis]\ntype = \"consolidation\"\nend = \"1 s\"\nsteps = 4\n\
+             [grid]\nlower = [0, 0]\nupper = [1, 4]\ncell = 0.5\norder = \"quadratic\"\n\
+             [material.sand]\nmodel = \"hencky\"\nyoung = \"1 MPa\"\npoisson = 0.2\ndrainage = \"coupled\"\nporosity = 0.4\n\
+             permeability = 1e-5\n\
+             [material.clay]\nmodel = \"hencky\"\nyoung = \"1 MPa\"\npoisson = 0.2\nporosity = 0.4\n{tight}\n\
+             [[body]]\nmaterial = \"sand\"\nbox = {{ lower = [0, 0], upper = [1, {height}] }}\npoints_per_cell = 2\n\
+             [[body]]\nmaterial = \"clay\"\nbox = {{ lower = [0, {height}], upper = [1, 3] }}\npoints_per_cell = 2\n\
+             [boundary]\nbottom = \"fixed\"\n[[drain]]\nname = \"base\"\nface = \"bottom\"\n"
+        )
+    };
+    let told = |height: f64, tight: &str| {
+        let (_, _, warnings) = lines(&layers(height, tight));
+        warnings.into_iter().find(|warning| warning.contains("material.sand and material.clay"))
+    };
+    let coupled = |permeability: f64| format!("drainage = \"coupled\"\npermeability = {permeability:e}");
+    assert!(told(2.2, &coupled(1e-7)).is_some_and(|told| told.contains("1.000e2 times as permeable")));
+    assert_eq!(told(2.0, &coupled(1e-7)), None);
+    assert_eq!(told(2.2, &coupled(5e-6)), None);
+    assert!(told(2.0, "drainage = \"undrained\"").is_some_and(|told| told.contains("in one of them only")));
+}
+
 /// A line where an edge that soil lies at ends and the surface goes on, of a body that stays over it; inside a cell a
 /// warning.
 #[test]

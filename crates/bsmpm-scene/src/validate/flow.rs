@@ -1,5 +1,6 @@
 //! Water that flows: soils, drains and inflows.
 
+mod leaks;
 mod shown;
 
 pub use shown::HELD_WATER;

@@ -144,6 +144,12 @@ fn insert(case: &mut Case, axis: usize, breakpoint: usize) {
     }
 }
 
+/// The axis across an edge and the grid line that the edge lies on, if there is one.
+pub(super) fn line_of(case: &Case, edge: &Edge) -> Option<(usize, usize)> {
+    let axis = [0, 1].into_iter().find(|&axis| edge.is_along(1 - axis))?;
+    Some((axis, grid_line(case, axis, edge.a[axis])?))
+}
+
 /// The grid line at `x` (m from the first) along an axis, if there is one.
 fn grid_line(case: &Case, axis: usize, x: f64) -> Option<usize> {
     let axis = &case.grid.axes[axis];
@@ -160,8 +166,7 @@ fn interfaces(case: &Case, found: &mut FoundLine) {
     }
     for body in &case.bodies {
         for edge in body.region.edges(&case.grid).0 {
-            let axis = [0, 1].into_iter().find(|&axis| edge.is_along(1 - axis));
-            let line = axis.and_then(|axis| Some((axis, grid_line(case, axis, edge.a[axis])?)));
+            let line = line_of(case, &edge);
             if line.is_some_and(|(axis, line)| line == 0 || line == case.grid.axes[axis].cells()) {
                 continue;
             }
@@ -222,10 +227,20 @@ type Interface = ([f64; 2], (usize, usize), [f64; 2]);
 
 /// The place along an edge where the materials on both sides are least alike, if they are not.
 fn unlike(case: &Case, edge: &Edge) -> Option<Interface> {
+    let lower = case.grid.lower()[1];
+    let unlike = beside(case, edge)
+        .filter_map(|(at, pair)| differ(case, pair, Some(at[1] - lower)).map(|ratios| (at, pair, ratios)));
+    // Of equal ones the first.
+    let most = |(.., ratios): &Interface| ratios[0].max(ratios[1]);
+    unlike.reduce(|worst, next| if most(&next) > most(&worst) { next } else { worst })
+}
+
+/// Places along an edge that has ground on both sides, and the materials there.
+pub(super) fn beside(case: &Case, edge: &Edge) -> impl Iterator<Item = ([f64; 2], (usize, usize))> {
     let lower = case.grid.lower();
     let aside = BESIDE * case.grid.shortest();
     let normal = usize::from(!edge.is_along(1)); // aside along x of a vertical edge, else along y
-    let unlike = (0..SAMPLES).filter_map(|k| {
+    (0..SAMPLES).filter_map(move |k| {
         let part = (k as f64 + 0.5) / SAMPLES as f64;
         let x = edge.a[0] + part * (edge.b[0] - edge.a[0]);
         let y = if normal == 0 { edge.a[1] + part * (edge.b[1] - edge.a[1]) } else { edge.y(x) };
@@ -235,12 +250,8 @@ fn unlike(case: &Case, edge: &Edge) -> Option<Interface> {
             place[normal] += shift;
             case.bodies.iter().find(|body| body.region.contains(place)).map(|body| body.material)
         };
-        let pair = (beside(-aside)?, beside(aside)?);
-        differ(case, pair, Some(y)).map(|ratios| (at, pair, ratios))
-    });
-    // Of equal ones the first.
-    let most = |(.., ratios): &Interface| ratios[0].max(ratios[1]);
-    unlike.reduce(|worst, next| if most(&next) > most(&worst) { next } else { worst })
+        Some((at, (beside(-aside)?, beside(aside)?)))
+    })
 }
 
 /// Whether two materials differ in stiffness or density, at a height (m from the grid's lower corner) or anywhere: the

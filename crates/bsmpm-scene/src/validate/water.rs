@@ -76,15 +76,17 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
     let (base, axis) = (grid.lower()[grid.dims() - 1], ["x", "y", "z"][grid.dims() - 1]);
     let heights = || table.levels().into_iter().flatten();
     if !record.gives("suction") && heights().all(|row| row.1 <= base) {
-        let message =
-            format!("the water table is nowhere above the grid's lower face, {axis} = {base}: leave [water] out");
+        let message = format!(
+            "the water table is nowhere above the grid's lower face, {axis} = {base}: leave [water] out, or give \
+                     it a `suction`, which ground has above a table that is below it"
+        );
         record.error(key, message, report);
         return None;
     }
     if let Some((t, _)) = heights().find(|(t, _)| end.is_some_and(|end| *t > end)) {
         report.warn(format!("{}: the row at t = {t} is beyond the end of the run", record.path_of(key)));
     }
-    steep(&table, (record, key), report);
+    steep((&table, grid), (record, key), report);
     Some(table)
 }
 
@@ -121,19 +123,28 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
     Some(places)
 }
 
-/// A line so steep that the depth below it is not the pressure, where water flows along it.
-fn steep(table: &Ambient, (record, key): (&Record, &str), report: &mut Report<'_>) {
+/// A line so steep that the depth below it is not the pressure, where water flows along it, or that points do not see
+/// its step.
+fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), report: &mut Report<'_>) {
     let Ambient::Line(places) = table else { return };
     let slope = |pair: &[LevelAt]| {
         let heights = pair[0].rows.iter().zip(&pair[1].rows);
         heights.map(|(from, to)| (to.1 - from.1).abs()).fold(0.0, f64::max) / (pair[1].x - pair[0].x)
     };
-    let steepest = places.windows(2).map(slope).fold(0.0, f64::max);
+    let (key, cell) = (record.path_of(key), grid.axes[0].shortest());
+    let is_step = |pair: &&[LevelAt]| slope(pair) > 1.0 && pair[1].x - pair[0].x < cell;
+    if let Some(step) = places.windows(2).find(is_step) {
+        let [from, to] = [step[0].x, step[1].x];
+        report.warn(format!(
+            "{key}: its step from x = {from} to {to} is narrower than a cell, {cell}: the water's thrust acts on what points lie \
+             there, and is too small or none where they lie beside it; let the line fall over a cell or more"
+        ));
+    }
+    let steepest = places.windows(2).filter(|pair| !is_step(pair)).map(slope).fold(0.0, f64::max);
     if steepest > GENTLE {
         report.warn(format!(
-            "{}: a slope of {steepest:.3}: the pressure is that of the depth straight below the line; where water flows along \
+            "{key}: a slope of {steepest:.3}: the pressure is that of the depth straight below the line; where water flows along \
              it, it is less, by {:.0} % there, and factors of safety are on the safe side",
-            record.path_of(key),
             100.0 * steepest * steepest / (1.0 + steepest * steepest)
         ));
     }

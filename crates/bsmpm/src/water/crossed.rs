@@ -25,6 +25,14 @@ impl Crossed {
         self.removed += more.removed;
     }
 
+    /// What has left the ground through its surface, or what has come in, whichever is more.
+    pub fn through(&self) -> f64 {
+        let out = self.drains.iter().chain(&self.faces).copied().chain(self.inflows.iter().map(|inflow| -inflow));
+        let (mut left, mut come) = (0.0, 0.0);
+        out.for_each(|out| if out > 0.0 { left += out } else { come -= out });
+        f64::max(left, come)
+    }
+
     /// All that has left the ground through its surface, less what has come in.
     pub fn out(&self) -> f64 {
         self.drains.iter().chain(&self.faces).sum::<f64>() - self.inflows.iter().sum::<f64>()

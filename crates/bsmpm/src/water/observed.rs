@@ -108,8 +108,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     }
 
     /// What the points have gained of water since the start and what has left the ground, or was removed with it, over
-    /// the larger of that and of what the points have taken in and given off, added; a billionth of the pores counts
-    /// for nothing. 0 where no water is lost, `None` where none flows or its pressures are held. One reduction.
+    /// the largest of what has left, what has come, and what the points have taken in and given off, added; a billionth
+    /// of the pores counts for nothing. 0 where no water is lost, `None` where none flows or its pressures are held. One reduction.
     pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
         self.water.flow.as_ref().filter(|flow| flow.motion != Motion::Held)?;
         let pores: Exact = (0..self.points.len())
@@ -118,7 +118,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         let sums = halo.total(&[self.taken().collect(), self.taken().map(f64::abs).collect(), pores]);
         let crossed = &self.points.surface.crossed;
         let out = crossed.out() + crossed.removed;
-        let scale = sums[1].max(crossed.out().abs()).max(crossed.removed.abs()).max(NOTHING * sums[2]);
+        let scale = sums[1].max(crossed.through()).max(crossed.removed.abs()).max(NOTHING * sums[2]);
         Some(if scale > 0.0 { (sums[0] + out) / scale } else { 0.0 })
     }
 

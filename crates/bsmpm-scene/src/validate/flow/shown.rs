@@ -62,6 +62,8 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     ponds(case, flow, report);
     weightless(case, flow, report);
     pressed(case, flow, report);
+    super::leaks::check(case, flow, report);
+    hanging(case, flow, report);
 }
 
 /// Loads that take much of the height of the soil that they consolidate: its surface leaves the cells behind.
@@ -339,6 +341,35 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
                 "drain.{number}: above the water table it holds the pressure of the air, and the ground there is fed as by \
                  a pond, by up to {way:.1} cells of water in {told}: give seepage = true (and soils a retention), or \
                  head where a pond stands"
+            ));
+        }
+    }
+}
+
+/// Ground above the water table whose pores stay full all the same: the water in them hangs on its skeleton.
+fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    let Some(water) = case.water.as_ref().filter(|_| case.grid.dims() == 2) else { return };
+    let (lower, cell) = (case.grid.lower(), case.grid.shortest());
+    let times: Vec<f64> = water.table.levels().into_iter().flatten().map(|row| row.0).collect();
+    for (number, named) in case.materials.iter().enumerate() {
+        let keeps = |soil: &Soil<3>| soil.permeability.is_some() && soil.retention.is_none();
+        if !flow.soils[number].as_ref().is_some_and(keeps) {
+            continue;
+        }
+        let made = case.bodies.iter().filter(|body| body.material == number);
+        let corners = made.flat_map(|body| body.region.edges(&case.grid).0).flat_map(|edge| [edge.a, edge.b]);
+        let above = corners.flat_map(|[x, y]| {
+            let heights = times.iter().filter_map(move |t| water.table.table(lower[0] + x, *t));
+            heights.map(move |(height, _)| lower[1] + y - height)
+        });
+        let most = above.fold(0.0, f64::max);
+        if most > cell {
+            report.warn(format!(
+                "material.{}: up to {most:.2} m of it are above the water table, its pores stay full, and suction of up to \
+                 {:.0} kPa, as of water that hangs there, holds it together without limit: a slope of it had a factor of safety \
+                 11 % above that under the table alone; give it a retention, or drainage = \"given\" where it is dry",
+                named.name,
+                1e-3 * most * water.unit_weight
             ));
         }
     }
