@@ -74,8 +74,8 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
         1.0
     }
 
-    /// By what factor `n` points with equal shares of a part of a cell, m from the grid's lower corner along an axis, are
-    /// farther from its middle than the middles of these shares.
+    /// By what factor `n` points with equal shares of a part of a cell, m from the grid's lower corner along an axis,
+    /// are farther from its middle than the middles of these shares.
     fn spread(_axis: usize, _part: [f64; 2], _n: usize) -> f64 {
         1.0
     }

@@ -91,8 +91,8 @@ impl Case {
         stage.at <= t + SAME * self.analysis.dt
     }
 
-    /// Since when something that stages apply and release acts (s, or pseudo-time) once the stages until the time `t` have
-    /// begun; `None` if it does not. What a stage applies before any has released it does not act at the start.
+    /// Since when something that stages apply and release acts (s, or pseudo-time) once the stages until the time `t`
+    /// have begun; `None` if it does not. What a stage applies before any has released it does not act at the start.
     pub fn acts_since(&self, what: Acting, t: f64) -> Option<f64> {
         let comes_later = self.stages.iter().find_map(|stage| {
             let named = stage.switches(what);

@@ -247,8 +247,8 @@ fn a_head_and_an_inflow_begin_with_a_stage() {
     repeats(&scratch, &["base", "within", "out"], &["19", "20", "21", "99", "100", "110"]);
 }
 
-/// A lift of silt that keeps water under suction comes when the level has fallen: with what its pores hold then, which is
-/// less than they would have held at the start, and the books know it.
+/// A lift of silt that keeps water under suction comes when the level has fallen: with what its pores hold then, which
+/// is less than they would have held at the start, and the books know it.
 #[test]
 fn a_lift_comes_with_the_suction_of_its_time() {
     let case = changed(LIFTED, "level = 1.0", "level_path = [[0, 0.75], [0.2, 0.45]]");

@@ -9,8 +9,8 @@ pub struct Crossed {
     pub faces: Vec<f64>,
     /// into the ground, through every inflow
     pub inflows: Vec<f64>,
-    /// that ground had taken in since the start which stages took away, less what ground that they placed held more than
-    /// it would have at the start
+    /// that ground had taken in since the start which stages took away, less what ground that they placed held more
+    /// than it would have at the start
     pub removed: f64,
 }
 
