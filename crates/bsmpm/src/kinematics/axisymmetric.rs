@@ -78,8 +78,9 @@ impl Kinematics<2> for Axisymmetric {
     /// A uniform stress is in equilibrium where the points integrate (r N)', of degree q, over all that a function
     /// reaches. In the middles of equal shares they miss (w/n)^2/24 times the change of its derivative in every cell, w
     /// wide; of even cells off the axis that adds up to nothing, and does so too if it grows in proportion to the
-    /// radius. So it does here, from the axis on over four cells, beyond which the points are evenly spaced: off the middle
-    /// of a cell by what makes its second moment right, or nearly so. Shares of the volume stay r times the area.
+    /// radius. So it does here, from the axis on over four cells, beyond which the points are evenly spaced: off the
+    /// middle of a cell by what makes its second moment right, or nearly so. Shares of the volume stay r times the
+    /// area.
     fn spread(axis: usize, [lower, upper]: [f64; 2], n: usize) -> f64 {
         if axis != 0 || n < 2 {
             return 1.0;

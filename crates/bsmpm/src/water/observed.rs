@@ -109,8 +109,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
 
     /// What the points have gained of water since the start and what has left the ground, or was removed with it, over
     /// the largest of what has left, what has come, and what the points have taken in and given off, added; a billionth
-    /// of the pores counts for nothing. 0 where no water is lost, `None` where none flows or its pressures are held. One
-    /// reduction.
+    /// of the pores counts for nothing. 0 where no water is lost, `None` where none flows or its pressures are held.
+    /// One reduction.
     pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
         self.water.flow.as_ref().filter(|flow| flow.motion != Motion::Held)?;
         let pores: Exact = (0..self.points.len())

@@ -7,8 +7,8 @@ use bsmpm::water::flow::Soil;
 use std::collections::BTreeMap;
 
 /// Ratio of two permeabilities from which an interface inside cells is warned of. A layer of one cell, half a cell off
-/// the grid's lines, let through 4, 11, 28 and 75 % too much with 2, 3, 5 and 10, and ten times as much with 100; of two
-/// cells 1, 4, 9, 22 and 80 %.
+/// the grid's lines, let through 4, 11, 28 and 75 % too much with 2, 3, 5 and 10, and ten times as much with 100; of
+/// two cells 1, 4, 9, 22 and 80 %.
 const UNLIKE: f64 = 3.0;
 
 /// Warns of soils that meet where the pressure cannot follow what their permeabilities ask for; in a plane.
@@ -53,8 +53,8 @@ fn leak(ratio: f64, is_on_line: bool, at: [f64; 2]) -> Option<String> {
     (!is_on_line && ratio >= UNLIKE).then(told)
 }
 
-/// How many times as permeable one of two soils is as the other, along the axis in which they differ most; without end if
-/// water flows in one only.
+/// How many times as permeable one of two soils is as the other, along the axis in which they differ most; without end
+/// if water flows in one only.
 fn ratio(a: &Soil<3>, b: &Soil<3>) -> f64 {
     match (&a.permeability, &b.permeability) {
         (None, None) => 1.0,
