@@ -86,8 +86,8 @@ impl Case {
 /// (i + ½)/n of the whole cell are points that lie inside; each has what the shape covers of its n-th of the cell along
 /// each axis, and the nearest point of the cell has what is covered around places outside. A cell without a place
 /// inside has one point in the covered part. The areas add up to the body's; where an outline, but not a box, covers
-/// less than 1e-9 of a cell, that is left out. In space there are `points_per_cell`³ of them, and volumes in the place of
-/// areas.
+/// less than 1e-9 of a cell, that is left out. In space there are `points_per_cell`³ of them, and volumes in the place
+/// of areas.
 ///
 /// Ids count body by body, cell by cell and point by point, axis 0 slowest; they and the points do not depend on
 /// `columns`. Positions are relative to the grid's lower corner (m), volumes and masses what the geometry makes of an
