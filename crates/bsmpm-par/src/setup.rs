@@ -87,15 +87,6 @@ fn decides(option: &str) -> bool {
     ["-pc_", "-mat_", "-sub_", "-mg_", "-redundant_"].iter().any(|prefix| option.starts_with(prefix))
 }
 
-/// Nominal number of steps.
-pub fn nominal_steps(case: &Case) -> u64 {
-    if case.analysis.growth.is_some() {
-        let schedule = bsmpm_scene::model::schedule(case);
-        return std::iter::successors(schedule.next(0.0), |&t| schedule.next(t)).count() as u64;
-    }
-    (case.analysis.end / case.analysis.dt - 1e-6).ceil() as u64
-}
-
 /// What the program chooses by itself in a run on so many ranks with further `options` of PETSc.
 pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::ManifestChoice> {
     let choice = |key: &str, value: &str, reason: &str| manifest::ManifestChoice {
@@ -134,7 +125,7 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
                       to step, so that the slips of all steps add up to pressure / penalty";
         choices.push(choice("penalty of rigid strips", &format!("{:.6e} Pa/m", penalty(case)), reason));
     }
-    if let Some((length, size)) = smoothing(case, nominal_steps(case)) {
+    if let Some((length, size)) = smoothing(case, bsmpm_scene::model::nominal_steps(case)) {
         let reason =
             format!("sqrt(steps (q+1)/6) h of modified-f-bar at the nominal steps; the thinnest body has {size} m");
         choices.push(choice("smoothing length", &format!("{length:.3e} m"), &reason));
@@ -177,7 +168,8 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::M
 /// Warnings of the case, and of what the program makes of it.
 pub fn warnings(case: &Case) -> Vec<String> {
     let mut warnings = case.warnings.clone();
-    if let Some((length, size)) = smoothing(case, nominal_steps(case)).filter(|(length, size)| length > &(SMALL * size))
+    if let Some((length, size)) =
+        smoothing(case, bsmpm_scene::model::nominal_steps(case)).filter(|(length, size)| length > &(SMALL * size))
     {
         warnings.push(format!(
             "modified-f-bar smooths the elastic strain once a step, whatever the step's length: over all steps along about \

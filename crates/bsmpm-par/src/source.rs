@@ -65,7 +65,7 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         format!("unknowns         at most {}", estimate.unknowns),
         format!("memory           about {} MiB on each of {ranks} rank(s){newton}", each(estimate.bytes_on(ranks))),
         format!("ranks            at most {}, of use about {}", case.grid.axes[0].cells(), estimate.useful_ranks),
-        format!("nominal steps    {}", setup::nominal_steps(case)),
+        format!("nominal steps    {}", bsmpm_scene::model::nominal_steps(case)),
     ];
     let told = case.notes.iter().map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));
     let chosen = setup::choices(case, ranks, options);

@@ -240,6 +240,15 @@ pub fn schedule(case: &Case) -> Schedule {
     schedule.growing(Growth { factor, most, restarts: case.stages.iter().map(|stage| stage.at).collect() })
 }
 
+/// Nominal number of steps.
+pub fn nominal_steps(case: &Case) -> u64 {
+    if case.analysis.growth.is_some() {
+        let schedule = schedule(case);
+        return std::iter::successors(schedule.next(0.0), |&t| schedule.next(t)).count() as u64;
+    }
+    (case.analysis.end / case.analysis.dt - 1e-6).ceil() as u64
+}
+
 /// Relative error of a quotient of two times.
 const ROUND_OFF: f64 = 1e-12;
 

@@ -115,7 +115,7 @@ impl Point {
             -order.cell(),
             case.grid.order as f64,
             case.points() as f64,
-            -case.analysis.dt,
+            bsmpm_scene::model::nominal_steps(case) as f64,
             -case.solver.tolerance,
             -case.solver.force_tolerance,
         ]
@@ -204,5 +204,15 @@ pub(super) mod tests {
         let finest = points.iter().max_by(|a, b| a.fineness().partial_cmp(&b.fineness()).unwrap()).unwrap();
         assert_eq!(finest.name(), "cell 5 mm, points_per_cell 4");
         assert!(points[0].differs_in_cells_only(&points[2]) && !points[0].differs_in_cells_only(&points[3]));
+    }
+
+    #[test]
+    fn steps_that_grow_less_are_finer() {
+        let case = include_str!("../../../../cases/validation/mandel.toml");
+        let axes = [SweepAxis::parse("analysis.growth=1.2,1.02,1.1").unwrap()];
+        let study = Study { path: Path::new("case.toml"), bytes: case.as_bytes(), set: &[], axes: &axes };
+        let points = study.points(&settings(&axes, false).unwrap(), &[]).unwrap();
+        let finest = points.iter().max_by(|a, b| a.fineness().partial_cmp(&b.fineness()).unwrap()).unwrap();
+        assert!(finest.name().ends_with("1.02"), "{}", finest.name());
     }
 }

@@ -102,6 +102,13 @@ impl VerifyArguments {
             TimeStep::Refined => own.analysis.dt * order.cell() / RunOrder::cell_of(own),
         };
         set.push(format!("analysis.dt={step:?}"));
+        if let (TimeStep::Refined, Some((growth, longest))) = (self.time_step, own.analysis.growth) {
+            let finer = order.cell() / RunOrder::cell_of(own);
+            set.push(format!("analysis.growth={:?}", 1.0 + finer * (growth - 1.0)));
+            if longest < f64::INFINITY {
+                set.push(format!("analysis.dt_max={:?}", finer * longest));
+            }
+        }
         RunOrder::read(&self.case, bytes, set, 2).map_err(|errors| Error::BadCase { path: self.case.clone(), errors })
     }
 }
