@@ -193,3 +193,23 @@ pub const WITHOUT_FLOW: &[Row] = &[
         .down(1),
     row("every = 0.5", "every = 0.5\nfields = [\"flux\"]", "output.fields", "no water flows").down(1),
 ];
+
+/// Ground above the water table that stays full, and a step of the table that no point may see.
+#[test]
+fn water_that_hangs_and_steps_that_are_narrow_are_warned_of() {
+    let case = |water: &str, more: &str| {
+        let text = include_str!("../../../../cases/rapid_drawdown.toml")
+            .replace("level_path = [[\"0 d\", 15.0], [\"10 d\", 5.0]]", water)
+            .replace("permeability = \"1e-9 m/s\"", &format!("permeability = \"1e-9 m/s\"\n{more}"));
+        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
+    };
+    let told = |warnings: &[String], of: &str| warnings.iter().any(|told| told.contains(of));
+    let hangs = "up to 5.00 m of it are above the water table";
+    assert!(told(&case("level = 10.0", ""), hangs));
+    assert!(!told(&case("level = 15.0", ""), "above the water table"));
+    let retention = "retention = { alpha = 0.1, n = 2.0, residual = 0.1 }";
+    assert!(!told(&case("level = 10.0", retention), "above the water table"));
+    let step = |width: f64| format!("line = [[0, 15], [30, 15], [{}, 5], [60, 5]]", 30.0 + width);
+    assert!(told(&case(&step(0.5), retention), "from x = 30 to 30.5 is narrower than a cell, 1"));
+    assert!(!told(&case(&step(2.0), retention), "narrower than a cell"));
+}
