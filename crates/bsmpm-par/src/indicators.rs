@@ -167,8 +167,8 @@ impl IndicatorState {
             rows.push(row("energy-growth", growth, meaning, GROWTH));
         }
         if let Some(lost) = self.water {
-            let meaning = "water that is not accounted for, over the larger of what crossed the ground's surface and what its \
-                           points took in and gave off: what the iterations leave, in a step up to force_tolerance of what moves \
+            let meaning = "water that is not accounted for, over the largest of what left through the ground's surface, what came \
+                           in there, and what its points took in and gave off: what the iterations leave, in a step up to force_tolerance of what moves \
                            there or 1e-13 of the ground's volume";
             rows.push(row("water-balance", lost, meaning, WATER));
         }
