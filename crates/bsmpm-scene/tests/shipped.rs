@@ -25,8 +25,9 @@ fn every_shipped_case_is_valid() {
             } else if path.extension().is_some_and(|extension| extension == "toml") && !path.ends_with("matrix.toml") {
                 let case = read(&path);
                 // The ground of the faults does without C0 lines on purpose, and is told so; so is the study of
-                // densities. Where water flows there are none at the ends of loads. What a column that is let go holds
-                // of its own water's weight, its first step has at once. Clay of which a level is drawn down stays full.
+                // densities. Where water flows there are none at the ends of loads. What a column that is let go
+                // holds of its own water's weight, its first step has at once. Clay of which a level is drawn down
+                // stays full.
                 let on_purpose = |told: &String| {
                     let without = ["mini_footing.toml", "embankment_consolidation.toml", "undrained_strip.toml"];
                     let line = "undrained_footing.toml"; // the study of friction beside one
