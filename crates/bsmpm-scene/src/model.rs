@@ -1,8 +1,10 @@
 //! From a valid case to the physics' model, its points and its steps.
 
+use crate::region::Region;
 use crate::seed::seed_bodies;
 use crate::{Body, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Stage, surfaces};
 use bsmpm::background::Background;
+use bsmpm::boundary::rigid::{self, Reaching, RigidBody, RigidState};
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
 use bsmpm::grid::{Grid, KnotVector};
@@ -195,7 +197,23 @@ pub fn points<K: Kinematics<D>, const D: usize>(
         let carried = points.material.iter().zip(&points.x);
         points.carried_pressure = Some(carried.map(|(&material, x)| carried_pressure(case, material, x)).collect());
     }
+    points.extent = extents::<K, D>(case, &points);
     points
+}
+
+/// How much of its reach every point has beside the rigid bodies, where there are any.
+fn extents<K: Kinematics<D>, const D: usize>(case: &Case, points: &Points<D>) -> Option<Vec<f64>> {
+    let bodies = surfaces::rigid(case, 0.0);
+    let grid = grid(case).ok().filter(|_| !bodies.is_empty())?;
+    let states: Vec<RigidState> = bodies.iter().map(RigidBody::at_rest).collect();
+    let reaching = Reaching { grid: &grid, points, reach: &reach(case), weight: K::weight };
+    let is_soil = |x: &Vector<D>| {
+        let at = placed_at(case.grid.lower(), x);
+        let holds =
+            |region: &Region| if D == 3 { region.contains_in_space(at) } else { region.contains([at[0], at[1]]) };
+        case.bodies.iter().enumerate().any(|(number, body)| case.is_there(number, 0.0) && holds(&body.region))
+    };
+    Some(rigid::extents((&bodies, &states), &reaching, is_soil))
 }
 
 /// Pa  pore pressure that a point carries, at `x` (m, from the grid's lower corner) at the start.

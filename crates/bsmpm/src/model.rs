@@ -3,6 +3,7 @@
 use crate::background::Background;
 use crate::boundary::Boundary;
 use crate::boundary::anchor::Surfaces;
+use crate::boundary::rigid::Reaching;
 use crate::grid::Grid;
 use crate::kinematics::Kinematics;
 use crate::material::{Material, MaterialError, Response};
@@ -205,6 +206,11 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         let mut model = self.at_rest();
         model.water.iter_mut().flat_map(|water| &mut water.flow).for_each(|flow| flow.motion = Motion::Held);
         model
+    }
+
+    /// What tells how far the points reach.
+    pub fn reaching<'a>(&'a self, points: &'a Points<D>) -> Reaching<'a, D> {
+        Reaching { grid: &self.grid, points, reach: &self.boundary.reach, weight: K::weight }
     }
 
     /// Whether all points have one Young's modulus.

@@ -65,6 +65,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let (strips, traction) = grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
     let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
     let carried = nodes.rigid.carried(&found.u, points.len(), halo);
+    let held = nodes.rigid.held(&found.u, halo);
     let mut report = StepReport { dt, strips, rigid, ..StepReport::of(&problem, &found) };
     let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
@@ -79,8 +80,8 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let Committed { u, advance, smoothed, content } =
         commit::commit(model, (&shape, &nodes), (found, (answers, state)), points, halo);
     *guess = u;
-    if let Some(extent) = nodes.rigid.extent() {
-        points.extent = Some(extent.to_vec());
+    if let Some(extent) = nodes.rigid.extents_after(&held, &surface.bodies, &model.reaching(points)) {
+        points.extent = Some(extent);
     }
     if carried.is_some() {
         points.grip = carried;

@@ -348,3 +348,46 @@ fn a_rough_punch_on_clay_goes_the_whole_way() {
         assert!((pressure / expected - 1.0).abs() < 0.005, "{pressure} for {expected}");
     }
 }
+
+/// Soil with a notch, to whose sides its points come no nearer than .7 of their spacing.
+const NOTCH: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "quasi-static"
+steps = 2
+[grid]
+lower = [0, 0]
+upper = [2, 2.25]
+cell = 0.125
+order = "quadratic"
+[material.soil]
+model = "hencky"
+young = "10 MPa"
+poisson = 0.3
+[[body]]
+material = "soil"
+polygon = [[0, 0], [2, 0], [2, 2], [0.5, 2], [0, 1.5]]
+points_per_cell = 3
+[boundary]
+left = "roller"
+right = "roller"
+bottom = "fixed"
+[stabilisation]
+method = "none"
+"#;
+
+/// What lies flush with an inclined outline touches it from the start: it had to be pushed by 12 mm here before.
+#[test]
+fn a_wedge_that_lies_in_a_notch_touches_its_sides() {
+    let wedge = "[[rigid]]\nname = \"wedge\"\npolygon = [[0, 1.5], [0.5, 2], [0.5, 2.2], [-0.5, 2.2], [-0.5, 2]]\n\
+                 displacement = [0, -0.002]\n[[history]]\nquantity = \"rigid-force\"\nrigid = \"wedge\"\nname = \"f\"\n";
+    let footing = "[footing]\nfrom = [0, 1.5]\nto = [0.5, 2]\ndisplacement = [0, -0.002]\nbase = \"smooth\"\n\
+                   [[history]]\nquantity = \"footing-force\"\nname = \"f\"\n";
+    let force = |by: &str, column: &str| {
+        let scratch = Scratch::with_case(&format!("{NOTCH}{by}"));
+        scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
+        at(&history(&scratch.path("out")), column, 1.0)
+    };
+    let (by_body, by_footing) = (force(wedge, "f-y"), force(footing, "f"));
+    assert!((by_body / by_footing - 1.0).abs() < 0.04, "{by_body} for {by_footing} N"); // measured 11,737 for 12,006
+}

@@ -9,7 +9,7 @@ mod point;
 mod terrain;
 
 pub use body::{MOTIONS, RigidBody, RigidState};
-pub use near::Surroundings;
+pub use near::{Reaching, Surroundings, extents};
 pub use outline::{Nearest, Outline, Sizes};
 pub use point::{Along, Grip};
 pub use terrain::Terrain;
@@ -80,17 +80,11 @@ pub struct RigidContacts<const D: usize> {
     length: f64, // s (or pseudo-time)
     dt: f64,     // s; 0 without inertia
     edge: f64,
-    extent: Option<Vec<f64>>, // of all points, if it is not yet known
     /// components of nodes that a body may stop in this step, which go by backward Euler; empty without inertia
     pub moving: Vec<bool>,
 }
 
 impl<const D: usize> RigidContacts<D> {
-    /// Part of what all points of this rank reach that bodies leave them at the start, once it has been found.
-    pub fn extent(&self) -> Option<&[f64]> {
-        self.extent.as_deref()
-    }
-
     /// Whether there is no body at all.
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()

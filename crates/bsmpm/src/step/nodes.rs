@@ -147,11 +147,8 @@ impl<const D: usize> Nodes<D> {
             false => {
                 let around = Surroundings {
                     bodies: (&model.boundary.rigid, &points.surface.bodies),
-                    reach: &model.boundary.reach,
-                    weight: K::weight,
-                    grid: &model.grid,
+                    reaching: model.reaching(points),
                     shape,
-                    points,
                     body_force: model.body_force(t + dt).unwrap_or_else(Vector::zeros),
                     free: &free,
                     dynamic: model.regime == Regime::Dynamic,

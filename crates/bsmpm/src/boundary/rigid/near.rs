@@ -2,7 +2,7 @@
 
 use super::body::{MOTIONS, RigidBody, RigidState};
 use super::point::{Grip, RigidPoint, along, tangents};
-use super::{BodyInStep, PENALTY, RigidContacts};
+use super::{BodyInStep, PENALTY, ROUNDING, RigidContacts};
 use crate::error::StepError;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
@@ -21,22 +21,40 @@ const SEEN: f64 = 1e-3;
 /// no material fills.
 const STRETCH: [f64; 2] = [0.25, 1.5];
 
+/// The least, unless it was less, and the most of the part of its F's reach that contact leaves a point.
+const EXTENT: [f64; 2] = [0.25, 1.5];
+
+/// A point that touches a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Held {
+    point: usize,
+    body: usize,
+    gap: f64, // m
+}
+
+/// What tells how far points reach.
+#[derive(Clone, Copy)]
+pub struct Reaching<'a, const D: usize> {
+    /// the grid
+    pub grid: &'a Grid<D>,
+    /// the points
+    pub points: &'a Points<D>,
+    /// parts of a cell that the points of a material reach to each side at the start, at most
+    pub reach: &'a [f64],
+    /// volume per m^D of the grid at a place
+    pub weight: fn(&Vector<D>) -> f64,
+}
+
 /// What of the scene the bodies see.
 pub struct Surroundings<'a, const D: usize> {
     /// the bodies, and what they carry
     pub bodies: (&'a [RigidBody<D>], &'a [RigidState]),
-    /// parts of a cell that the points of a material reach to each side at the start, at most
-    pub reach: &'a [f64],
-    /// the grid
-    pub grid: &'a Grid<D>,
+    /// the points on their grid
+    pub reaching: Reaching<'a, D>,
     /// shape functions
     pub shape: &'a Shape<D>,
-    /// the points
-    pub points: &'a Points<D>,
     /// m/s2  force per mass at the end of the step
     pub body_force: Vector<D>,
-    /// volume per m^D of the grid at a place
-    pub weight: fn(&Vector<D>) -> f64,
     /// components that nothing else holds
     pub free: &'a [bool],
     /// whether inertia acts
@@ -64,11 +82,10 @@ impl<const D: usize> RigidContacts<D> {
             bodies: Vec::new(),
             length: dt,
             dt: if around.dynamic { dt } else { 0.0 },
-            edge: around.grid.smallest_edge(),
-            extent: around.points.extent.is_none().then(|| extents(around)),
+            edge: around.reaching.grid.smallest_edge(),
             moving: Vec::new(),
         };
-        let mut moving = vec![0.0; if around.dynamic { around.grid.nodes() } else { 0 }];
+        let mut moving = vec![0.0; if around.dynamic { around.reaching.grid.nodes() } else { 0 }];
         let mut near = vec![0.0; 2 * bodies.len()];
         for (number, (body, state)) in bodies.iter().zip(states).enumerate() {
             let mut at = BodyInStep::of(body, state, (t, dt), around);
@@ -115,6 +132,43 @@ impl<const D: usize> RigidContacts<D> {
         Ok(contacts)
     }
 
+    /// The points of this rank that touch one body under `u`, with it and how far off it they are, m.
+    pub fn held(&self, u: &[f64], halo: &dyn Halo) -> Vec<Held> {
+        let motions = self.found(u, halo);
+        let touching = self.points.iter().filter(|point| point.grip != Grip::Open);
+        let held = touching.map(|point| Held {
+            point: point.point,
+            body: point.body,
+            gap: point.gap_after(&self.moved(point, u, &motions)),
+        });
+        let mut held: Vec<Held> = held.collect();
+        held.sort_by_key(|held| held.point);
+        let shares = |a: &Held, b: Option<&Held>| b.is_some_and(|b| b.point == a.point);
+        let alone = |k: &usize| {
+            let before = k.checked_sub(1).map(|k| &held[k]);
+            !shares(&held[*k], before) && !shares(&held[*k], held.get(k + 1))
+        };
+        (0..held.len()).filter(alone).map(|k| held[k]).collect()
+    }
+
+    /// Part of what every point of this rank reaches that it has from the end of the step on, with the bodies'
+    /// `states` and the points as they are then: what touched one goes on as far from it as the step has left it,
+    /// whatever its F has become.
+    pub fn extents_after(&self, held: &[Held], states: &[RigidState], after: &Reaching<'_, D>) -> Option<Vec<f64>> {
+        if held.is_empty() {
+            return None;
+        }
+        let mut extents = after.points.extent.clone().unwrap_or_else(|| vec![1.0; after.points.len()]);
+        for Held { point, body, gap } in held.iter().copied() {
+            let (pose, outline) = (self.bodies[body].body.pose(&states[body].moved), &self.bodies[body].body.outline);
+            let near = outline.nearest(&pose.seen(&after.points.x[point]));
+            let (whole, _) = reach(after, point, &pose.turned(&near.normal));
+            let extent = &mut extents[point];
+            *extent = ((near.distance - gap) / whole).clamp(extent.min(EXTENT[0]), EXTENT[1]);
+        }
+        Some(extents)
+    }
+
     /// Adds the points near a body; the distance of the nearest, m.
     fn gather(
         &mut self,
@@ -123,7 +177,7 @@ impl<const D: usize> RigidContacts<D> {
         dt: f64,
     ) -> f64 {
         let (body, before, after) = (&at.body, at.body.pose(&at.before.moved), at.body.pose(&at.predicted));
-        let (Surroundings { grid, shape, points, .. }, mut least) = (around, f64::INFINITY);
+        let (shape, Reaching { grid, points, .. }, mut least) = (around.shape, around.reaching, f64::INFINITY);
         let longest = (0..D).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
         let radius = body.outline.radius();
         for patch in shape.patches() {
@@ -135,8 +189,8 @@ impl<const D: usize> RigidContacts<D> {
                 }
                 let near = body.outline.nearest(&after.seen(&x));
                 let normal = after.turned(&near.normal);
-                let (whole, edge) = reach(around, p, &normal);
-                let extent = self.extent.as_ref().or(points.extent.as_ref()).map_or(1.0, |extent| extent[p]);
+                let (whole, edge) = reach(&around.reaching, p, &normal);
+                let extent = points.extent.as_ref().map_or(1.0, |extent| extent[p]);
                 let reach = whole * extent;
                 let gap = near.distance - reach;
                 least = least.min(gap);
@@ -216,30 +270,42 @@ impl<const D: usize> BodyInStep<D> {
     }
 }
 
-/// Part of what every point reaches that the bodies leave it as they stand before the step: points of bodies that were
-/// cut lie as near to a rigid one as the rule of their cell puts them, and are not thrown out.
-fn extents<const D: usize>(around: &Surroundings<'_, D>) -> Vec<f64> {
-    let (bodies, states) = around.bodies;
-    let longest = (0..D).map(|axis| longest_edge(around.grid, axis)).fold(0.0, f64::max);
+/// Of every point how much of its reach it has at the start, with the bodies as they stand. Points of soil that an
+/// outline cuts lie as near to it as the rule of their cell puts them, and are not thrown out; where soil begins at the
+/// outline, `is_soil` just off it, and no point reaches there, as in lattices that an outline is inclined to, the
+/// nearest do.
+pub fn extents<const D: usize>(
+    (bodies, states): (&[RigidBody<D>], &[RigidState]),
+    reaching: &Reaching<'_, D>,
+    is_soil: impl Fn(&Vector<D>) -> bool,
+) -> Vec<f64> {
+    let Reaching { grid, points, .. } = reaching;
+    let longest = (0..D).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
     let of = |p: usize| {
-        let left = bodies.iter().zip(states).map(|(body, state)| {
+        let x = points.x[p];
+        let (mut cut, mut flush) = (1.0_f64, EXTENT[1]);
+        for (body, state) in bodies.iter().zip(states) {
             let pose = body.pose(&state.moved);
-            let x = around.points.x[p];
             if (x - pose.center).norm() > body.outline.radius() + 2.0 * longest {
-                return 1.0;
+                continue;
             }
             let near = body.outline.nearest(&pose.seen(&x));
-            let (reach, _) = reach(around, p, &pose.turned(&near.normal));
-            (near.distance / reach).clamp(0.0, 1.0)
-        });
-        left.fold(1.0, f64::min)
+            let normal = pose.turned(&near.normal);
+            let (reach, _) = reach(reaching, p, &normal);
+            let share = near.distance / reach;
+            cut = cut.min(share.max(0.0));
+            if share > 1.0 && share < flush && is_soil(&(x - normal * (near.distance - ROUNDING * reach))) {
+                flush = share;
+            }
+        }
+        if cut < 1.0 || flush == EXTENT[1] { cut } else { flush }
     };
-    (0..around.points.len()).map(of).collect()
+    (0..points.len()).map(of).collect()
 }
 
 /// How far a point and the body at it come in a step as they start it, m.
 fn comes<const D: usize>(point: &RigidPoint<D>, at: &BodyInStep<D>, around: &Surroundings<'_, D>, dt: f64) -> f64 {
-    let v = around.points.motion.as_ref().map_or_else(Vector::zeros, |motion| motion.v[point.point]);
+    let v = around.reaching.points.motion.as_ref().map_or_else(Vector::zeros, |motion| motion.v[point.point]);
     let step = at.predicted - at.before.moved;
     dt * v.norm() + point.carried_by(&step).norm()
 }
@@ -252,8 +318,8 @@ fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
 
 /// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at
 /// the start, deformed by its F; and an edge of that cell.
-fn reach<const D: usize>(around: &Surroundings<'_, D>, p: usize, normal: &Vector<D>) -> (f64, f64) {
-    let Surroundings { grid, points, reach, weight, .. } = around;
+fn reach<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vector<D>) -> (f64, f64) {
+    let Reaching { grid, points, reach, weight } = around;
     let placed = points.x[p] - points.u[p];
     let placed = if grid.locate(&placed).is_some() { placed } else { points.x[p] };
     let start = grid.locate(&placed);
