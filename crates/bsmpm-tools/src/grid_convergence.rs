@@ -7,7 +7,7 @@ use serde::Serialize;
 /// The safety factor for three grids (Roache, 1998).
 const SAFETY: f64 = 1.25;
 /// Differences below this share of the value are rounding and tolerances, and show no order.
-const NOISE: f64 = 1e-9;
+const NOISE: f64 = 1e-7;
 /// The highest order that is looked for; more is no order of a method, but chance.
 const HIGHEST: f64 = 30.0;
 

@@ -158,44 +158,51 @@ impl<const D: usize> Boundary<D> {
     }
 
     /// Force of every support on the body: the nodal `reaction` summed over the components that it decides, N. What two
-    /// supports hold at their common edge counts for the one that it is normal to, which has the pressure there.
+    /// supports hold at their common edge counts for the one that it is normal to, which has the pressure there; for
+    /// one in contact, too, where it pushes beside the edge.
     pub fn reactions(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<f64>> {
         let owned = halo.owned();
         let mut counted = vec![false; reaction.len()];
         let mut sums = vec![Exact::default(); self.supports.len() * D];
-        let mut sum = |(support, sum): (&Support<D>, &mut [Exact]), acts: &dyn Fn(usize) -> bool| {
+        let mut sum = |(support, sum): (&Support<D>, &mut [Exact]), acts: &dyn Fn(usize, usize) -> bool| {
             for node in grid.face_nodes(support.axis, support.upper) {
-                for component in (0..D).filter(|&component| acts(component)) {
+                for component in (0..D).filter(|&component| acts(node, component)) {
                     if !std::mem::replace(&mut counted[Nodal::<D>::at(node, component)], true) && owned.contains(node) {
                         sum[component].add(reaction[Nodal::<D>::at(node, component)]);
                     }
                 }
             }
         };
+        let holds = |support: &Support<D>, component: usize| support.velocity[component].is_some();
+        let in_contact = |(support, _): &(&Support<D>, &mut [Exact])| support.contact.is_some();
         // Who holds goes first, then what pushes, then what rubs.
-        for across in [true, false] {
-            for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
-                let holds = |component: usize| support.velocity[component].is_some();
-                sum((support, sums), &|component| holds(component) && (component == support.axis) == across);
-            }
+        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
+            sum((support, sums), &|_, component| component == support.axis && holds(support, component));
         }
-        if self.has_contact() {
-            let in_contact = |(support, _): &(&Support<D>, &mut [Exact])| support.contact.is_some();
-            for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
-                sum((support, sums), &|component| component == support.axis);
-            }
-            // Along an edge in space that it shares with a face that rubs, a smooth one decides nothing.
-            for rubs in [true, false] {
-                let of = |(support, _): &(&Support<D>, &mut [Exact])| {
-                    support.contact.is_some_and(|contact| (contact.friction > 0.0) == rubs)
-                };
-                for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(of) {
-                    sum((support, sums), &|component| component != support.axis);
-                }
+        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
+            let pushes = |node: usize| {
+                let within = reaction.get(Nodal::<D>::at(grid.off_edges(node, support.axis), support.axis));
+                within.is_some_and(|&within| if support.upper { within < 0.0 } else { within > 0.0 })
+            };
+            sum((support, sums), &|node, component| component == support.axis && pushes(node));
+        }
+        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
+            sum((support, sums), &|_, component| component != support.axis && holds(support, component));
+        }
+        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
+            sum((support, sums), &|_, component| component == support.axis);
+        }
+        // Along an edge in space that it shares with a face that rubs, a smooth one decides nothing.
+        for rubs in [true, false] {
+            let of = |(support, _): &(&Support<D>, &mut [Exact])| {
+                support.contact.is_some_and(|contact| (contact.friction > 0.0) == rubs)
+            };
+            for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(of) {
+                sum((support, sums), &|_, component| component != support.axis);
             }
         }
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(|(s, _)| s.absorbs) {
-            sum((support, sums), &|_| true);
+            sum((support, sums), &|_, _| true);
         }
         halo.total(&sums).chunks_exact(D).map(<[f64]>::to_vec).collect()
     }

@@ -227,6 +227,21 @@ impl<const D: usize> Grid<D> {
         (0..self.nodes()).filter(|&node| self.node_at(node)[axis] == wanted).collect()
     }
 
+    /// The nearest node of the window in the same layer across `axis` that is on none of the other axes' faces.
+    pub fn off_edges(&self, node: usize, axis: usize) -> usize {
+        let (place, mut found, mut stride) = (self.node_at(node), node, 1);
+        for other in (0..D).rev() {
+            match place[other] {
+                _ if other == axis => {}
+                0 => found += stride,
+                last if last + 1 == self.axes[other].functions() => found -= stride,
+                _ => {}
+            }
+            stride *= self.nodes_along(other);
+        }
+        found
+    }
+
     /// Node along each axis (global) of a local index.
     pub fn node_at(&self, mut index: usize) -> [usize; D] {
         let mut node = [0; D];

@@ -337,6 +337,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         beyond::check(case, rigid, record, report);
         if let RigidShape::InSpace(solid) = &rigid.shape {
             solid::check(case, (number, rigid, solid), record, report);
+            joined(case, (number, rigid), record, report);
         } else if let Some((at, body)) = overlap(case, rigid, |body| together(case, number, body).is_some()) {
             let message = inside(case, (number, body), &format!("{:.4}, {:.4}", at[0], at[1]));
             record.error(shape::key(record), message, report);

@@ -365,6 +365,7 @@ fn drains_that_feed_the_ground_are_warned_of() {
 #[test]
 fn a_body_spins_about_its_place() {
     let case = set(FULL, &["body.2.spin={ rate = 2.0, about = [\"1 m\", 2.0] }"]).expect("a valid case");
+    assert!(case.warnings.iter().any(|warning| warning.contains("a body spins")), "{:?}", case.warnings);
     let mut seen = 0;
     for point in seed::<PlaneStrain, 2>(&case, 0..case.grid.axes[0].cells())
         .filter(|point| point.material == 2 && point.x[0] >= 1.0)

@@ -40,7 +40,9 @@ pub(super) fn draw(
     for (frame, values) in frames.iter().zip(&values) {
         let name = format!("{}_{}.png", field.name(), short(frame.time));
         let bar = Bar { range: colours, label: field.label(section.map(|section| section.axis)) };
-        picture((record, case.as_ref(), section), frame, values, region, bar).save(&record.directory.join(&name))?;
+        let beyond = field.beyond(values, colours);
+        picture((record, case.as_ref(), section), frame, (values, &beyond), region, bar)
+            .save(&record.directory.join(&name))?;
         names.push(name);
     }
     Ok(names)
@@ -49,7 +51,7 @@ pub(super) fn draw(
 fn picture(
     (record, case, section): (&RunRecord, Option<&Case>, Option<Section>),
     frame: &Frame,
-    values: &[f64],
+    (values, beyond): (&[f64], &str),
     region: [(f64, f64); 2],
     bar: Bar,
 ) -> Canvas {
@@ -59,7 +61,7 @@ fn picture(
     let axes = layout.axes(ABOVE);
     let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 });
     let reduction = record.case.strength_reduction.map(|factor| format!(", strength divided by {factor}"));
-    let below = record.moment(frame.time) + &reduction.unwrap_or_default() + &section::named(section);
+    let below = record.moment(frame.time) + &reduction.unwrap_or_default() + &section::named(section) + beyond;
     title(&mut canvas, layout.width, &record.manifest.case.title, &below);
     let shades: Vec<_> = values.iter().map(|&value| colour::map(bar.share(value))).collect();
     let sizes = splat::sizes(frame, &record.manifest.case.geometry);

@@ -172,6 +172,18 @@ impl FieldName {
         }
     }
 
+    /// What lies beyond the range of colours by more than a twentieth of it, to be said below a title.
+    pub(super) fn beyond(self, values: &[f64], (low, high): (f64, f64)) -> String {
+        let (least, largest) = values.iter().fold((high, low), |(least, most), &x| (x.min(least), x.max(most)));
+        let room = 0.05 * (high - low);
+        let end = |word: &str, value: f64| {
+            let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+            format!(", {word} {rounded} {}", self.source().unit)
+        };
+        let below = if least < low - room { end("least", least) } else { String::new() };
+        below + &if largest > high + room { end("largest", largest) } else { String::new() }
+    }
+
     /// Whether it is never negative, and 0 is where nothing is.
     fn begins_at_zero(self) -> bool {
         matches!(self, Self::PlasticStrain | Self::Displacement | Self::Velocity | Self::Q | Self::Flux)

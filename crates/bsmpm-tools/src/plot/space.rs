@@ -136,13 +136,19 @@ pub(super) fn draw(
     for (frame, values) in frames.iter().zip(&values) {
         let name = format!("{}_space_{}.png", field.name(), short(frame.time));
         let bar = Bar { range, label: field.label(Some(2)) };
-        picture((record, [lower, upper]), frame, values, bar).save(&record.directory.join(&name))?;
+        let beyond = field.beyond(values, range);
+        picture((record, [lower, upper]), frame, (values, &beyond), bar).save(&record.directory.join(&name))?;
         names.push(name);
     }
     Ok(names)
 }
 
-fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &[f64], bar: Bar) -> Canvas {
+fn picture(
+    (record, grid): (&RunRecord, [[f64; 3]; 2]),
+    frame: &Frame,
+    (values, beyond): (&[f64], &str),
+    bar: Bar,
+) -> Canvas {
     let view = View::new(VIEW);
     let corners = std::array::from_fn::<_, 8, _>(|k| view.place(&corner(grid, k)));
     let ends = |axis: usize| {
@@ -157,7 +163,7 @@ fn picture((record, grid): (&RunRecord, [[f64; 3]; 2]), frame: &Frame, values: &
     let axes = layout.axes(ABOVE);
     let below = if lying { axes::BELOW + bar::BELOW } else { 20.0 };
     let mut canvas = Canvas::new(layout.width, axes.bottom + below);
-    title(&mut canvas, layout.width, &record.manifest.case.title, &record.moment(frame.time));
+    title(&mut canvas, layout.width, &record.manifest.case.title, &(record.moment(frame.time) + beyond));
     let place = |k: usize| axes.place((corners[k][0], corners[k][1]));
     // The edges at the nearest corner would hide what is inside.
     for (from, to) in edges().filter(|(from, to)| *from != NEAREST && *to != NEAREST) {

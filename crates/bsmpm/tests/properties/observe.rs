@@ -1,7 +1,7 @@
 //! What a history records, on fields whose answer is known.
 
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::boundary::Support;
+use bsmpm::boundary::{Contact, Support};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::observe::projection::projected_pressure;
@@ -125,6 +125,26 @@ fn totals_are_those_of_a_material_or_of_all() {
     }
     assert_eq!(centre_of_mass(points, &Part::Material(2), &halo), None);
     assert_eq!(mean_stress(points, &Part::Ids(64..99), &halo), [0.0; 6]);
+}
+
+/// A column that rests against a wall in contact on a base that is fixed: the wall has what it has beside a roller.
+#[test]
+fn a_wall_in_contact_has_the_thrust_of_the_edge_that_a_fixed_base_holds() {
+    let thrust = |wall: Support<2>| {
+        let (_, steps) =
+            Scene::<PlaneStrain, 2>::new([axis(0.5, 2, 2), axis(0.5, 4, 2)], hencky(1e4, 0.3), Regime::QuasiStatic)
+                .body([0..2, 0..4], 2, 2.0, |x| x * 0.0)
+                .support(Support::roller(0, false))
+                .support(wall)
+                .support(Support::fixed(1, false))
+                .gravity(1.0, 0.0)
+                .solved(1.0, 1.0);
+        steps[0].report.reactions[1][0]
+    };
+    let contact = Contact { friction: 0.0, lifts: true };
+    let (rolls, touches) = (thrust(Support::roller(0, true)), thrust(Support::contact(0, true, contact)));
+    println!("{rolls} and {touches}");
+    assert!(rolls < 0.0 && (touches / rolls - 1.0).abs() < 1e-6);
 }
 
 #[test]
