@@ -256,7 +256,7 @@ impl<const D: usize> Recorder<D> {
             Quantity::SectionForces { lines, round, fixed } => {
                 let local = lines.iter().map(|line| line.map(|end| vector(end) - self.lower));
                 let at_start = Section { lines: local.collect(), round: *round };
-                section((&model.grid, points), at_start, *fixed, halo)
+                section::<K, D>((&model.grid, points), at_start, *fixed, halo)
             }
             Quantity::Velocity { at, surface: true } => {
                 let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());

@@ -145,7 +145,9 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::M
                       repeat to the bit";
         rows.push((if linear.dissection { "newton_pc_type" } else { "solver.linear.pc" }, "redundant", reason));
     }
-    if case.solver.linear_on(ranks) != case.solver.linear {
+    if case.solver.linear_on(ranks) != case.solver.linear && linear.dissection {
+        rows.push(("solver.linear", "direct", "multigrid over the grid's splines is for one rank"));
+    } else if case.solver.linear_on(ranks) != case.solver.linear {
         let reason = "multigrid on several ranks need not repeat to the bit, as solver.reproducible wants; with false it takes \
                       fewer iterations";
         rows.push(("solver.linear", "incomplete-cholesky", reason));

@@ -3,13 +3,15 @@
 
 mod choice;
 mod coupled;
+mod cycles;
 mod direct;
 mod dissection;
+mod multigrid;
 mod shell;
 mod system;
 mod tally;
 
-pub use choice::{Choice, probe};
+pub use choice::{Choice, SPLINE_MULTIGRID, probe};
 pub use coupled::Solvers;
 pub use tally::Tally;
 
@@ -20,6 +22,7 @@ use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
 use bsmpm::nodal::Nodal;
 use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
+use cycles::CycleSystem;
 use direct::StiffnessOperator;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use petsc_rs::{Matrix, Petsc};
@@ -36,10 +39,11 @@ pub struct KspSolver<'p, const D: usize, const C: usize> {
     grid: Grid<D>,
     stencil: Stencil<D, C>,
     free: Vec<bool>,
-    numbers: Numbering,             // empty before PETSc needs it
-    own: usize,                     // unknowns of this rank
-    shell: Option<ShellSystem<'p>>, // where the program factorises
-    is_sized: bool,                 // the shell system has the present unknowns
+    numbers: Numbering,                    // empty before PETSc needs it
+    own: usize,                            // unknowns of this rank
+    shell: Option<ShellSystem<'p>>,        // where the program factorises
+    cycles: Option<CycleSystem<'p, D, C>>, // where multigrid is the program's own
+    is_sized: bool,                        // the shell system has the present unknowns
     definite: Option<System<'p>>,
     general: Option<System<'p>>, // where Newton's method is used
     tallies: Tallies,
@@ -90,6 +94,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             numbers,
             own: 0,
             shell: None,
+            cycles: None,
             is_sized: false,
             definite: None,
             general: None,
@@ -200,6 +205,30 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         Some((shell, matrix, tally))
     }
 
+    /// Has levels made of the stiffness as KSP's preconditioner. Collective.
+    fn set_up_cycles(&mut self) -> Result<(), SolveError> {
+        if self.cycles.is_none() {
+            self.cycles = Some(CycleSystem::new(self.petsc, &self.choice).map_err(failed)?);
+        }
+        let (owned, free, is_sized) = (self.halo.owned(), &self.free, self.is_sized);
+        if let (Some(cycles), false) = (&mut self.cycles, is_sized) {
+            let unknowns = owned.places::<C>().filter(|&component| free[component]).collect();
+            cycles.resize(unknowns).map_err(failed)?;
+            self.is_sized = true;
+        }
+        let Some((cycles, matrix, tally)) = self.cycle_system() else { return Err(missing()) };
+        cycles.set_up(matrix, tally)
+    }
+
+    /// The system with multigrid, what it is to solve, and where that is counted.
+    fn cycle_system(&mut self) -> Option<(&mut CycleSystem<'p, D, C>, StiffnessOperator<'_, D, C>, &mut Tally)> {
+        let Self { halo, grid, stencil, free, timers, .. } = self;
+        let matrix = StiffnessOperator { halo, grid, stencil, free, unknowns: &[], timers };
+        let cycles = self.cycles.as_mut()?;
+        let tally = self.tallies.definite.get_or_insert_with(|| cycles.tally());
+        Some((cycles, matrix, tally))
+    }
+
     /// A nodal solution of the assembled system, as `by` finds it.
     fn solve_assembled(
         &mut self,
@@ -293,6 +322,9 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         if symmetry == Symmetry::Definite && self.choice.dissection {
             return self.set_up_shell();
         }
+        if symmetry == Symmetry::Definite && self.choice.is_geometric() {
+            return self.set_up_cycles();
+        }
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("factorisation");
         self.build(symmetry).map_err(failed)
@@ -301,6 +333,10 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
         if self.choice.dissection {
             return self.solve_shell(rhs, solution);
+        }
+        if self.choice.is_geometric() {
+            let (cycles, matrix, tally) = self.cycle_system().ok_or_else(missing)?;
+            return cycles.solve(matrix, (rhs, solution), tally);
         }
         match self.choice.is_rough() {
             true => self.solve_assembled(System::approach, rhs, solution),
@@ -313,6 +349,10 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     }
 
     fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+        if self.choice.is_geometric() {
+            let (cycles, matrix, tally) = self.cycle_system().ok_or_else(missing)?;
+            return cycles.solve_to(relative, matrix, (rhs, solution), tally);
+        }
         match self.choice.is_rough() {
             true => self.solve_assembled(|system, rhs, tally| system.solve_to(relative, rhs, tally), rhs, solution),
             false => self.solve(rhs, solution),

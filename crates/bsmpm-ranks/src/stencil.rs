@@ -193,6 +193,30 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         })
     }
 
+    /// The nodes that a node couples with, and its blocks there; nothing for one without a stencil.
+    pub fn blocks(&self, node: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        let row = self.rows[node];
+        let places = (row != NONE).then(|| self.places.around(node)).into_iter().flatten();
+        places.map(move |(place, other)| (other, &self.values[row * self.width() + place * C * C..][..C * C]))
+    }
+
+    /// Adds `weight` times a block to that of a node with another one, which lies in its stencil unless the block is
+    /// zero.
+    pub fn add_block(&mut self, node: usize, other: usize, weight: f64, block: &[f64]) {
+        let (row, width) = (self.rows[node], self.width());
+        if let (true, Some(place)) = (row != NONE, self.places.between(node, other)) {
+            let values = &mut self.values[row * width + place * C * C..][..C * C];
+            values.iter_mut().zip(block).for_each(|(value, entry)| *value += weight * entry);
+        }
+    }
+
+    /// The diagonal entry of a component, 0 of a node without a stencil.
+    pub fn on_diagonal(&self, component: usize) -> f64 {
+        let (node, i) = Nodal::<C>::split(component);
+        let at = (self.places.count() / 2 * C + i) * C + i;
+        if self.rows[node] == NONE { 0.0 } else { self.values[self.rows[node] * self.width() + at] }
+    }
+
     /// y = A x of the components marked `free`, as far as this window's blocks go; `x` is zero at the others.
     pub fn multiply(&self, free: &[bool], x: &[f64], y: &mut [f64]) {
         let nodes = self.rows.iter().zip(y.chunks_exact_mut(C).zip(free.chunks_exact(C))).enumerate();

@@ -243,6 +243,13 @@ impl Solver {
     /// The linear solver on so many ranks: of what the program takes by size, what repeats to the bit there if it must.
     pub fn linear_on(&self, ranks: usize) -> Linear {
         match self.linear {
+            taken if taken.pc == Pc::SplineMultigrid && ranks > 1 => Linear {
+                ksp: Ksp::Preonly,
+                pc: Pc::Cholesky,
+                factor: Some(Factor::Dissection),
+                applications: 0,
+                ..taken
+            },
             taken if taken.by_size && taken.pc == Pc::Gamg && self.reproducible && ranks > 1 => {
                 Linear { pc: Pc::Bjacobi, applications: 1, ..taken }
             }

@@ -4,7 +4,7 @@
 
 use crate::case::{Body, Case, Nonlinear, Solver};
 use crate::grid::GridSpec;
-use crate::words::Factor;
+use crate::words::{Factor, Pc};
 use bsmpm::grid::room;
 use bsmpm::model::Regime;
 use std::ops::Range;
@@ -35,6 +35,10 @@ const ENTRY: u128 = 36;
 const BUILT: u128 = 44;
 /// Bytes of an entry where an incomplete factor is applied, or multigrid: rows, value, and the factor's half of them.
 const ROUGH_ENTRY: u128 = 25;
+/// Bytes of an entry on the coarser levels of multigrid over the grid's splines, and of an unknown in the factors of
+/// the boxes of its smoother, which overlap: 192/2 numbers, times (4/3)^3, on all levels.
+const COARSER: u128 = 2;
+const PATCHES: u128 = 1100;
 /// Bytes of an entry that every further rank holds where all factorise the whole system: it is sent, collected and
 /// copied.
 const REPEATED: u128 = 60;
@@ -146,6 +150,8 @@ impl Systems {
         let again = u128::from(direct && solver.reproducible);
         let elastic = if solver.linear.factor == Some(Factor::Dissection) {
             [fronts, 0, 0]
+        } else if solver.linear.pc == Pc::SplineMultigrid {
+            [entries * COARSER + unknowns * PATCHES, 0, 0]
         } else if solver.linear.applications > 0 {
             [entries * ROUGH_ENTRY, 0, 0]
         } else {
@@ -267,6 +273,8 @@ impl Case {
         let ghosts = if dims == 3 { self.ghosts(occupied, reach, stencil + every + vectors) } else { 0 };
         let repeated = systems.repeated + wet_repeated + ghosts;
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
+        let linear = self.solver.linear;
+        let coordinates = linear.applications > 0 && linear.pc != Pc::SplineMultigrid;
         Estimate {
             cells: bounded(cells(&self.grid)),
             nodes: bounded(nodes),
@@ -278,7 +286,7 @@ impl Case {
             useful_ranks: bounded((dims * occupied / FEWEST).clamp(1, self.grid.spans(0) as u128)),
             bytes: bounded(bytes),
             repeated: bounded(repeated),
-            coordinates: bounded(if self.solver.linear.applications > 0 { entries * BUILT } else { 0 }),
+            coordinates: bounded(if coordinates { entries * BUILT } else { 0 }),
             newton: bounded(systems.perhaps[0]),
             newton_repeated: bounded(systems.perhaps[1]),
         }

@@ -84,7 +84,7 @@ pub(super) fn pore<const D: usize>(
 }
 
 /// Forces across a section, in the order of their columns; none across one that has lost its material.
-pub(super) fn section<const D: usize>(
+pub(super) fn section<K: Kinematics<D>, const D: usize>(
     (grid, points): (&Grid<D>, &Points<D>),
     at_start: Section<D>,
     fixed: bool,
@@ -93,7 +93,8 @@ pub(super) fn section<const D: usize>(
     let placed = |end: &Vector<D>| if fixed { Some(*end) } else { observe::moved(points, end, halo) };
     let lines = at_start.lines.iter().map(|[from, to]| Some([placed(from)?, placed(to)?]));
     let present = lines.collect::<Option<_>>().map(|lines| Section { lines, ..at_start });
-    let forces = present.map_or_else(SectionForces::default, |of| observe::section_forces(grid, points, &of, halo));
+    let forces =
+        present.map_or_else(SectionForces::default, |of| observe::section_forces::<K, D>(grid, points, &of, halo));
     let SectionForces { normal, shear, torsion, bending } = forces;
     let in_plane = [normal, shear[0], bending[0]];
     if D == 2 { in_plane.into() } else { vec![normal, shear[0], shear[1], torsion, bending[0], bending[1]] }

@@ -41,6 +41,8 @@ const ROUGH: [&str; 10] = [
     "-mg_levels_sub_pc_type",
     "icc",
 ];
+/// The name of this program's own multigrid in the place of a PCType.
+pub const SPLINE_MULTIGRID: &str = "spline-multigrid";
 /// Prefix of the options of Newton's linear systems.
 const NEWTON: &str = "newton_";
 
@@ -65,7 +67,7 @@ impl Choice {
     /// Options that PETSc must start with, before the user's own.
     pub fn options(&self) -> Vec<&str> {
         let mut options = OPTIONS.to_vec();
-        if self.is_rough() {
+        if self.is_rough() && !self.is_geometric() {
             options.extend(ROUGH);
         }
         if self.pc == "gamg" {
@@ -92,15 +94,26 @@ impl Choice {
         ["gamg", "ml", "hypre"].contains(&self.pc.as_str())
     }
 
+    /// Whether definite systems are preconditioned by multigrid over the grid's splines, see [`SPLINE_MULTIGRID`];
+    /// their matrix is not assembled.
+    pub fn is_geometric(&self) -> bool {
+        self.pc == SPLINE_MULTIGRID
+    }
+
+    /// The program's own preconditioner of definite systems, if it is one.
+    fn shell(&self) -> Option<&'static str> {
+        if self.dissection { Some("dissection") } else { self.is_geometric().then_some("multigrid of splines") }
+    }
+
     /// Tells a solver; what the options say goes before. A general matrix preconditions a Krylov method.
     pub(super) fn apply(&self, ksp: &mut Ksp<'_>, symmetry: Symmetry) -> petsc_rs::Result<()> {
-        if self.dissection && symmetry == Symmetry::Definite {
+        if let (Some(shell), Symmetry::Definite) = (self.shell(), symmetry) {
             ksp.set_type(&self.ksp)?;
-            ksp.set_pc_shell("dissection")?;
+            ksp.set_pc_shell(shell)?;
             return ksp.set_from_options();
         }
         let pc = match (symmetry, self.pc.as_str()) {
-            (Symmetry::General, "cholesky") => "lu",
+            (Symmetry::General, "cholesky" | SPLINE_MULTIGRID) => "lu",
             (_, pc) => pc,
         };
         match symmetry {
@@ -126,7 +139,7 @@ impl Choice {
 /// a run begins. Collective.
 pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> {
     let mut ksp = Ksp::new(petsc)?;
-    if choice.dissection {
+    if choice.shell().is_some() {
         choice.apply(&mut ksp, Symmetry::Definite)?;
         ksp.set_shell_operator(1)?;
         let mut product = |x: &[f64], y: &mut [f64]| y.copy_from_slice(x);

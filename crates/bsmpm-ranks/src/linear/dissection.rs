@@ -8,7 +8,7 @@
 //! the grid's box of nodes, so that unknowns that come or go cost no analysis of a graph.
 
 mod factor;
-mod front;
+pub(super) mod front;
 mod plan;
 mod reduction;
 #[cfg(test)]

@@ -10,7 +10,7 @@ use petsc_rs::{Ksp, Matrix, NormType, Petsc, Product, Tolerances, Vector};
 const TRUSTED: f64 = 1e-6;
 
 /// Most iterations around a preconditioner that is applied in place of a solution elsewhere.
-const MOST_ITERATIONS: usize = 10_000;
+pub(super) const MOST_ITERATIONS: usize = 10_000;
 
 /// Most products of one of Newton's directions.
 const MOST_PRODUCTS: usize = 300;

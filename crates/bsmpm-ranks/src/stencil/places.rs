@@ -54,6 +54,13 @@ impl<const D: usize> Places<D> {
         })
     }
 
+    /// The place of the node `b` as seen from `a`, if it is one.
+    pub fn between(&self, a: usize, b: usize) -> Option<usize> {
+        let [a, b] = [a, b].map(|node| digits(node, &self.functions));
+        let near = (0..D).all(|axis| a[axis].abs_diff(b[axis]) <= self.half);
+        near.then(|| self.of(self.number(a), self.number(b)))
+    }
+
     /// The lowest node of the box around two nodes of the window.
     pub fn lowest(&self, a: usize, b: usize) -> usize {
         let [a, b] = [a, b].map(|node| digits(node, &self.functions));

@@ -1,7 +1,7 @@
 //! What an axisymmetric case must and must not have: the axis is the grid's left face, and nothing moves or acts
 //! sideways that would not do so all around it.
 
-use crate::case::{Case, DrainSite, Face, Geometry, LoadedLine, Support};
+use crate::case::{Case, DrainSite, Face, Geometry, LoadedLine, Quantity, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Measurement, Side, Word};
@@ -113,13 +113,16 @@ fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
 }
 
-/// Quantities that have no meaning, or that are told of plane sections only.
+/// Quantities that have no meaning.
 fn told(case: &Case, record: &Record, report: &mut Report<'_>) {
-    use Measurement::{AngularMomentum, Moment, RigidMoment, RigidRotation, SectionForces};
+    use Measurement::{AngularMomentum, Moment, RigidMoment, RigidRotation};
     for (history, record) in case.histories.iter().zip(record.records("history")) {
         let measured = history.quantity.measurement();
-        if matches!(measured, AngularMomentum | Moment | RigidMoment | RigidRotation | SectionForces) {
+        if matches!(measured, AngularMomentum | Moment | RigidMoment | RigidRotation) {
             record.error("quantity", format!("there is no {measured} in an axisymmetric case"), report);
+        }
+        if let Quantity::SectionForces { lines, .. } = &history.quantity {
+            lines.iter().for_each(|[from, to]| on_axis([[from[0], from[1]], [to[0], to[1]]], record, report));
         }
     }
 }

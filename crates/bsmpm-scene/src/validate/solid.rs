@@ -122,7 +122,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         report.warn(format!(
             "solver.linear: a factor of up to {} unknowns in space, about {:.1} GB in all, and every doubling of the points takes \
              2.5 times the memory; with poisson <= 0.45, at rest where soil yields <= 0.4, linear = \"incomplete-cholesky\" \
-             takes a fraction",
+             takes a fraction, and else on one rank \"spline-multigrid\" about half",
             estimate.active,
             estimate.bytes as f64 / 1e9
         ));

@@ -156,6 +156,7 @@ fn in_a_word(solver: LinearSolver) -> Linear {
         LinearSolver::Multigrid => iterative(Ksp::Cg, Pc::Gamg, 0),
         LinearSolver::IncompleteCholesky => iterative(Ksp::Preonly, Pc::Bjacobi, 1),
         LinearSolver::MultigridCycles => iterative(Ksp::Preonly, Pc::Gamg, 2),
+        LinearSolver::SplineMultigrid => iterative(Ksp::Preonly, Pc::SplineMultigrid, 2),
     }
 }
 
@@ -165,12 +166,16 @@ const FEW_IN_SPACE: u64 = 10_000;
 /// Unknowns of a solid from which multigrid is taken: both take the same time with 115,000 in dynamics (same place).
 const MANY_IN_SPACE: u64 = 150_000;
 
+/// The same of nearly incompressible material, from which multigrid over the grid's splines is taken (same place).
+const FEW_INCOMPRESSIBLE: u64 = 100_000;
+
 /// Takes what applies in a solid of many unknowns unless the case says it, and refuses what needs solutions of a
 /// solver that has none.
 pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let Some(solver) = root.record("solver") else { return };
     let condenses = case.rigid.iter().any(|rigid| rigid.free.contains(&true));
-    if case.solver.linear.applications > 0 && (case.flow.is_some() || condenses) {
+    let is_own = case.solver.linear.pc == Pc::SplineMultigrid;
+    if (is_own || case.solver.linear.applications > 0) && (case.flow.is_some() || condenses) {
         let what = if condenses { "rigid bodies that move freely" } else { "water that flows" };
         let message =
             format!("a preconditioner in place of solutions was not shown to be right with {what}: \"direct\"");
@@ -178,6 +183,10 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         return;
     }
     let (dims, active) = (case.grid.dims(), case.estimate().active);
+    if dims < 3 && is_own {
+        solver.error("linear", "\"spline-multigrid\" was shown to be right for solids only: \"direct\"", report);
+        return;
+    }
     // Near failure the preconditioner alone may give up before the ground does, and whether it does is the answer.
     let fails = case.strength_reduction.is_some();
     if dims < 3 || fails || solver.gives("linear") || case.flow.is_some() || condenses || active <= FEW_IN_SPACE {
@@ -185,12 +194,16 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     }
     let so_many = format!("up to {active} unknowns in space");
     if case.is_nearly_incompressible() {
-        if case.solver.linear.factor.is_some() {
+        let what = "of nearly incompressible material, or of soil that flows at rest with poisson above 0.4";
+        if case.solver.linear.factor.is_some() && active <= FEW_INCOMPRESSIBLE {
+            chosen(LinearSolver::Direct, format!("{so_many} {what}: a factor takes less time than multigrid"), report);
+        } else if case.solver.linear.factor.is_some() {
+            case.solver.linear = Linear { by_size: true, ..in_a_word(LinearSolver::SplineMultigrid) };
             let reason = format!(
-                "{so_many} of nearly incompressible material, or of soil that flows at rest with poisson above 0.4: what \
-                 preconditioners leave in place of solutions takes several times as long"
+                "{so_many} {what}, more than {FEW_INCOMPRESSIBLE}: a factor takes longer and more memory, what other \
+                 preconditioners leave in place of solutions takes several times as long; on several ranks a factor"
             );
-            chosen(LinearSolver::Direct, reason, report);
+            chosen(LinearSolver::SplineMultigrid, reason, report);
         }
         return;
     }

@@ -24,6 +24,9 @@ choice! {
         IncompleteCholesky = "incomplete-cholesky",
         /// Two cycles of PETSc's algebraic multigrid in place of a solution.
         MultigridCycles = "multigrid-cycles",
+        /// Two cycles of multigrid over the grid's own splines, with boxes of nodes as its smoother, in place of a
+        /// solution: for solids on one rank.
+        SplineMultigrid = "spline-multigrid",
     }
 }
 
@@ -46,7 +49,7 @@ choice! {
 }
 
 choice! {
-    /// Preconditioner or direct solver, by PETSc's name.
+    /// Preconditioner or direct solver, by PETSc's name but for the last.
     pub enum Pc {
         /// Cholesky's factorisation.
         Cholesky = "cholesky",
@@ -76,6 +79,8 @@ choice! {
         Ml = "ml",
         /// Preconditioners of hypre.
         Hypre = "hypre",
+        /// This program's own: multigrid over the grid's splines, for solids on one rank.
+        SplineMultigrid = "spline-multigrid",
     }
 }
 

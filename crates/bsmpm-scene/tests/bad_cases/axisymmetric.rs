@@ -51,8 +51,9 @@ pub const AXISYMMETRIC: &[Row] = &[
     ),
     row(
         "quantity = \"mass\"",
-        "quantity = \"section-forces\"\nfrom = [0.1, 0.5]\nto = [0.9, 0.5]",
-        "history.0.quantity",
-        "no section-forces",
-    ),
+        "quantity = \"section-forces\"\nfrom = [0.0, 0.5]\nto = [0.0, 0.9]",
+        "history.0.from",
+        "lies on the axis",
+    )
+    .down(1),
 ];

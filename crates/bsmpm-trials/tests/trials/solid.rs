@@ -231,9 +231,12 @@ fn a_preconditioner_in_place_of_solutions_leads_to_the_same_column() {
     let cycles = Scratch::with_case(&changed(&rough, "incomplete-cholesky", "multigrid-cycles"));
     cycles.goes_on(1, &["11"]);
     agree(&cycles.path("whole1"), &scratch.path("factor"));
-    let found = [scratch.path("factor"), scratch.path("whole1"), cycles.path("whole1")];
+    let splines = Scratch::with_case(&changed(&rough, "incomplete-cholesky", "spline-multigrid"));
+    splines.goes_on(1, &["11"]);
+    agree(&splines.path("whole1"), &scratch.path("factor"));
+    let found = [scratch.path("factor"), scratch.path("whole1"), cycles.path("whole1"), splines.path("whole1")];
     let found = found.map(|path| manifest(&path).linear["stiffness"].pc.clone());
-    assert_eq!(found, ["shell (dissection)", "bjacobi", "gamg"]);
+    assert_eq!(found, ["shell (dissection)", "bjacobi", "gamg", "shell (multigrid of splines)"]);
 }
 
 /// Yielding ground in statics, from the elastic equilibrium of its weight, which one application does not solve, by
@@ -254,9 +257,13 @@ fn newtons_directions_are_sought_around_a_preconditioner() {
         scratch.mpirun(ranks, &["case.toml", "-q", "-o", name, "--set", &set[0], "--set", &set[1]]).expect(0);
     };
     run("factor", 1, "direct", "newton");
-    for (ranks, linear, nonlinear) in
-        [(2, "incomplete-cholesky", "newton"), (1, "incomplete-cholesky", "auto"), (1, "multigrid-cycles", "newton")]
-    {
+    for (ranks, linear, nonlinear) in [
+        (2, "incomplete-cholesky", "newton"),
+        (1, "incomplete-cholesky", "auto"),
+        (1, "multigrid-cycles", "newton"),
+        (1, "spline-multigrid", "newton"),
+        (2, "spline-multigrid", "auto"),
+    ] {
         let name = format!("{linear}-{nonlinear}");
         run(&name, ranks, linear, nonlinear);
         agree(&scratch.path(&name), &scratch.path("factor"));

@@ -2,11 +2,14 @@
 //!
 //! They are the virtual work of the stress on motions of the grid that move one side of the section as a rigid body and
 //! leave the other one. Forces on the nodes balance for such motions, so normal force, shear forces and moments have
-//! their equilibrium as exactly as the step has its own, however the stress oscillates from point to point.
+//! their equilibrium as exactly as the step has its own, however the stress oscillates from point to point. A body of
+//! revolution moves as a rigid one along its axis only: what a motion along the radius stretches around the axis does
+//! work beyond the section as well, which is left out, and the other forces are means over the cells at the section.
 
 use crate::exact::Exact;
 use crate::grid::Grid;
 use crate::grid::shape::with_width;
+use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::tensor::{Tensor, Vector};
@@ -22,7 +25,8 @@ pub struct Section<const D: usize> {
 }
 
 /// Forces of the material beyond a section on that before it. In a plane they are per metre of thickness, t is the
-/// first direction and the second is the plane's normal, along which nothing is told.
+/// first direction and the second is the plane's normal, along which nothing is told. In axisymmetry they are sums over
+/// one radian of the surface that the line sweeps: of the components in the meridian plane, not of vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SectionForces {
     /// N  int sigma_nn dA, n = t1 x t2, in a plane to the right of t; positive in tension
@@ -38,17 +42,17 @@ pub struct SectionForces {
 /// Forces across a section; material beyond its edge, or none, counts for nothing. The cut is smeared over the cells at
 /// the section, with its middle on it; at a support or a surface over cells inside of it, from which the forces are
 /// extrapolated to the section.
-pub fn section_forces<const D: usize>(
+pub fn section_forces<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
     section: &Section<D>,
     halo: &dyn Halo,
 ) -> SectionForces {
     let mut sums = [const { Exact::ZERO }; 6];
-    if let Some(cut) = Cut::of(grid, section).and_then(|cut| cut.inside(grid, points, halo)) {
+    if let Some(cut) = Cut::of(grid, section).and_then(|cut| cut.inside::<K>(grid, points, halo)) {
         for p in 0..points.len() {
             let volume = points.volume[p] * points.F.at(p).determinant();
-            let share = cut.share(&points.x[p], volume);
+            let share = cut.share(&points.x[p], volume / K::weight(&points.x[p]));
             if share == 0.0 {
                 continue;
             }
@@ -117,8 +121,8 @@ impl<const D: usize> Cut<D> {
 
     /// With ramps that neither what holds the material nor a load on its surface has a part in: its forces are those at
     /// the section less the loads between, so they are extrapolated. `None` where the material does not reach.
-    fn inside(mut self, grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> Option<Self> {
-        let sides = self.sides(grid, points, halo);
+    fn inside<K: Kinematics<D>>(mut self, grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> Option<Self> {
+        let sides = self.sides::<K>(grid, points, halo);
         if sides.iter().any(|side| side.room < -0.25 * self.smear) {
             return None;
         }
@@ -146,14 +150,14 @@ impl<const D: usize> Cut<D> {
     }
 
     /// Before and beyond the section.
-    fn sides(&self, grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> [Side; 2] {
+    fn sides<K: Kinematics<D>>(&self, grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> [Side; 2] {
         // A function that is not zero at a surface has its node within half of its support.
         let least = (0.5 * grid.order() as f64 + 1.0) * self.smear;
         let far = 2.0 * least + 3.0 * self.smear;
         let mut ends = [-far; 2];
         let wide = Self { reach: far, ramps: Vec::new(), ..*self };
         for p in 0..points.len() {
-            let volume = points.volume[p] * points.F.at(p).determinant();
+            let volume = points.volume[p] * points.F.at(p).determinant() / K::weight(&points.x[p]);
             if wide.share(&points.x[p], volume) > 0.0 {
                 let half = 0.5 * volume.powf(1.0 / D as f64);
                 let apart = spatial(&(points.x[p] - self.middle)).dot(&self.across);
@@ -190,7 +194,8 @@ impl<const D: usize> Cut<D> {
         self.ramps.iter().map(ramp).sum()
     }
 
-    /// The part of a point of some volume (m^D) that is within the section's edge; 0 of one that is far from it.
+    /// The part of a point of some volume (m^D of the grid) that is within the section's edge; 0 of one that is far
+    /// from it.
     fn share(&self, x: &Vector<D>, volume: f64) -> f64 {
         let apart = spatial(&(x - self.middle));
         if apart.dot(&self.across).abs() > self.reach {

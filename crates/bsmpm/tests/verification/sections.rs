@@ -39,7 +39,7 @@ pub(super) fn cut<K: Kinematics<D>, const D: usize, const N: usize>(
 ) -> SectionForces {
     let at = |place: [f64; D]| moved(&scene.points, &Vector::from(place), &scene.halo()).unwrap();
     let section = Section { lines: lines.map(|line| line.map(at)).into(), round: false };
-    section_forces(&scene.model.grid, &scene.points, &section, &scene.halo())
+    section_forces::<K, D>(&scene.model.grid, &scene.points, &section, &scene.halo())
 }
 
 /// Whatever the place of the cut in its cell and its direction.
@@ -162,7 +162,7 @@ fn the_six_forces_of_a_plane_are_the_integrals_of_the_stress_and_of_a_disc_those
         };
         let across = |halves: [f64; 2], round: bool| {
             let section = Section { lines: vec![line(first, halves[0]), line(second, halves[1])], round };
-            section_forces(&scene.model.grid, &scene.points, &section, &scene.halo())
+            section_forces::<Solid, 3>(&scene.model.grid, &scene.points, &section, &scene.halo())
         };
         let found = across([0.5, 0.75], false);
         let (area, square) = (1.5, |width: f64| (width * width - spacing * spacing) / 12.0 * 1.5);

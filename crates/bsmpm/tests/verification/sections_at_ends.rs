@@ -60,7 +60,7 @@ fn the_normal_force_at_the_base_and_the_top_of_a_column_is_the_weight_above() {
     assert!(largest < 2e-4);
     // Above the material there is nothing.
     let above = Section { lines: vec![[[1.2, 3.1], [-0.2, 3.1]].map(Vector::from)], round: false };
-    let found = section_forces(&plane.model.grid, &plane.points, &above, &plane.halo());
+    let found = section_forces::<PlaneStrain, 2>(&plane.model.grid, &plane.points, &above, &plane.halo());
     assert_eq!(found, SectionForces::default());
 }
 

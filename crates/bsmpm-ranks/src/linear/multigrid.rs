@@ -1,0 +1,148 @@
+//! Multigrid over the grid's own splines, as a preconditioner of symmetric positive definite systems on one rank.
+//!
+//! Coarser splines have every other breakpoint (de Boor's knot insertion makes the finer ones of them), coarse matrices
+//! are P^T A P. Smoothed is by Chebyshev's polynomial of the additive Schwarz method on overlapping boxes of 4 nodes
+//! along every axis, which hold the divergence-free fields of a few cells: without them iterations grow with the bulk
+//! modulus, and pointwise smoothers do not damp what nearly empty cells leave (de Prenter et al. 2020, Comput. Mech.
+//! 65, 807-838; Pé de la Riva, Rodrigo and Gaspar 2019, SIAM J. Sci. Comput. 41, S321-S345). A cycle is a fixed,
+//! linear, symmetric function of the matrix alone.
+
+mod patches;
+#[cfg(test)]
+mod tests;
+mod transfer;
+
+use crate::stencil::Stencil;
+use bsmpm::grid::Grid;
+use patches::Patches;
+use transfer::Transfer;
+
+/// Nodes along an axis of a patch of the smoother, and from one to the next.
+const PATCH: (usize, usize) = (4, 3);
+/// Free components up to which a level is solved at once.
+const FEW: usize = 1000;
+/// Steps of the power method, and what its eigenvalue is multiplied with to be a bound.
+const POWER: (usize, f64) = (8, 1.2);
+/// Part of the largest eigenvalue from which the smoother damps.
+const SMOOTHED: f64 = 0.1;
+
+/// A matrix: blocks of the window's nodes, and which components are unknown.
+pub type Operator<'a, const D: usize, const C: usize> = (&'a Stencil<D, C>, &'a [bool]);
+
+/// All levels of a matrix, the finest first, whose matrix is the caller's.
+pub struct Multigrid<const D: usize, const C: usize> {
+    levels: Vec<Level<D, C>>,
+}
+
+struct Level<const D: usize, const C: usize> {
+    own: Option<(Stencil<D, C>, Vec<bool>)>, // of all but the finest
+    patches: Patches,
+    bound: f64,                   // of the eigenvalues of the smoothed matrix
+    coarser: Option<Transfer<D>>, // `None` of the coarsest one, which one patch solves
+}
+
+impl<const D: usize, const C: usize> Multigrid<D, C> {
+    /// Levels of a matrix on a window that is all of the grid's room. `None` if a box of it is not positive definite.
+    pub fn new(grid: &Grid<D>, finest: Operator<'_, D, C>) -> Option<Self> {
+        let (mut levels, mut grid, mut own) = (Vec::new(), grid.clone(), None::<(Stencil<D, C>, Vec<bool>)>);
+        loop {
+            let operator = own.as_ref().map_or(finest, |(stencil, free)| (stencil, &free[..]));
+            let coarser = if count(operator.1) > FEW { Transfer::new(&grid) } else { None };
+            let along: [usize; D] = std::array::from_fn(|axis| grid.nodes_along(axis));
+            let Some((coarse, transfer)) = coarser else {
+                let whole = along.iter().copied().fold(1, usize::max);
+                let patches = Patches::new(operator, along, (whole, whole))?;
+                levels.push(Level { own, patches, bound: 1.0, coarser: None });
+                return Some(Self { levels });
+            };
+            let patches = Patches::new(operator, along, PATCH)?;
+            let bound = largest_eigenvalue(operator, &patches);
+            let next = transfer.galerkin(operator, &coarse);
+            levels.push(Level { own: own.take(), patches, bound, coarser: Some(transfer) });
+            (grid, own) = (coarse, Some(next));
+        }
+    }
+
+    /// x = B b of nodal arrays by so many cycles, each of what the one before leaves.
+    pub fn apply(&self, finest: Operator<'_, D, C>, cycles: usize, b: &[f64], x: &mut [f64]) {
+        x.fill(0.0);
+        let (mut left, mut step) = (b.to_vec(), vec![0.0; b.len()]);
+        for number in 0..cycles {
+            if number > 0 {
+                subtract_product(finest, &step, &mut left);
+            }
+            self.cycle(0, finest, &left, &mut step);
+            x.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
+        }
+    }
+
+    fn cycle(&self, number: usize, finest: Operator<'_, D, C>, b: &[f64], x: &mut [f64]) {
+        let level = &self.levels[number];
+        let operator = level.own.as_ref().map_or(finest, |(stencil, free)| (stencil, &free[..]));
+        x.fill(0.0);
+        let Some(transfer) = &level.coarser else { return level.patches.add(b, x) };
+        let mut left = b.to_vec();
+        let last = level.smooth(operator, &mut left, x);
+        subtract_product(operator, &last, &mut left);
+        let coarse = transfer.restrict::<C>(&left);
+        let mut below = vec![0.0; coarse.len()];
+        self.cycle(number + 1, finest, &coarse, &mut below);
+        let mut step = transfer.prolong::<C>(&below);
+        step.iter_mut().zip(operator.1).filter(|(_, free)| !**free).for_each(|(step, _)| *step = 0.0);
+        subtract_product(operator, &step, &mut left);
+        x.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
+        level.smooth(operator, &mut left, x);
+    }
+}
+
+impl<const D: usize, const C: usize> Level<D, C> {
+    /// Two steps of Chebyshev's method for what is `left`, added to x; returns the last one, whose product is not yet
+    /// taken off.
+    fn smooth(&self, operator: Operator<'_, D, C>, left: &mut [f64], x: &mut [f64]) -> Vec<f64> {
+        let (upper, lower) = (self.bound, SMOOTHED * self.bound);
+        let (middle, half) = (0.5 * (upper + lower), 0.5 * (upper - lower));
+        let mut step = vec![0.0; left.len()];
+        self.patches.add(left, &mut step);
+        step.iter_mut().for_each(|step| *step /= middle);
+        x.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
+        subtract_product(operator, &step, left);
+        let first = half / middle;
+        let second = 1.0 / (2.0 / first - first);
+        step.iter_mut().for_each(|step| *step *= 0.5 * first * half);
+        self.patches.add(left, &mut step);
+        step.iter_mut().for_each(|step| *step *= 2.0 * second / half);
+        x.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
+        step
+    }
+}
+
+/// b -= A x.
+fn subtract_product<const D: usize, const C: usize>((stencil, free): Operator<'_, D, C>, x: &[f64], b: &mut [f64]) {
+    let mut image = vec![0.0; x.len()];
+    stencil.multiply(free, x, &mut image);
+    b.iter_mut().zip(&image).for_each(|(b, image)| *b -= image);
+}
+
+/// Of the matrix after the patches' solutions: by the power method, from a vector that has all of them.
+fn largest_eigenvalue<const D: usize, const C: usize>(operator: Operator<'_, D, C>, patches: &Patches) -> f64 {
+    let (stencil, free) = operator;
+    let mut state = 1_u32;
+    let mut next = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state) / f64::from(u32::MAX) - 0.5
+    };
+    let mut x: Vec<f64> = free.iter().map(|free| if *free { next() } else { 0.0 }).collect();
+    let (mut image, mut largest) = (vec![0.0; x.len()], 1.0);
+    for _ in 0..POWER.0 {
+        stencil.multiply(free, &x, &mut image);
+        x.fill(0.0);
+        patches.add(&image, &mut x);
+        largest = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        x.iter_mut().for_each(|x| *x /= largest);
+    }
+    largest * POWER.1
+}
+
+fn count(free: &[bool]) -> usize {
+    free.iter().filter(|free| **free).count()
+}

@@ -1,0 +1,189 @@
+//! Splines of a grid by those of a coarser one, whose breakpoints are some of its own.
+
+use super::Operator;
+use crate::stencil::Stencil;
+use bsmpm::grid::{Grid, KnotVector};
+
+/// Cells along an axis that is not made coarser.
+const FEWEST: usize = 4;
+
+/// Nodes of a coarser window of which those of a window are made, axis by axis.
+pub(super) struct Transfer<const D: usize> {
+    parents: [Vec<Vec<(usize, f64)>>; D], // of every node along an axis: coarse nodes with their weights
+    coarse: [usize; D],                   // nodes of the coarse window
+}
+
+impl<const D: usize> Transfer<D> {
+    /// The coarser grid of a window, and how it becomes the window; `None` if no axis can be made coarser.
+    pub fn new(grid: &Grid<D>) -> Option<(Grid<D>, Self)> {
+        let axes = grid.axes().each_ref().map(coarser);
+        if (0..D).all(|axis| axes[axis].cells() == grid.axes()[axis].cells()) {
+            return None;
+        }
+        let mut parents: [Vec<Vec<(usize, f64)>>; D] = std::array::from_fn(|axis| {
+            let start = grid.cells_along()[axis].start;
+            (start..start + grid.nodes_along(axis)).map(|fine| weights(&grid.axes()[axis], &axes[axis], fine)).collect()
+        });
+        let room = std::array::from_fn(|axis| {
+            let numbers = parents[axis].iter().flatten().map(|(number, _)| *number);
+            let (first, last) = numbers.fold((usize::MAX, 0), |(first, last), at| (first.min(at), last.max(at)));
+            let start = first.min(axes[axis].cells() - 1);
+            start..(last + 1).saturating_sub(grid.order()).clamp(start + 1, axes[axis].cells())
+        });
+        for (axis, room) in room.iter().enumerate() {
+            parents[axis].iter_mut().flatten().for_each(|(number, _)| *number -= room.start);
+        }
+        let coarse = Grid::new(axes).ok()?.reaching(grid.beyond()).within(room);
+        let nodes = std::array::from_fn(|axis| coarse.nodes_along(axis));
+        Some((coarse, Self { parents, coarse: nodes }))
+    }
+
+    /// Nodal values of the window for those of the coarse one.
+    pub fn prolong<const C: usize>(&self, coarse: &[f64]) -> Vec<f64> {
+        (0..D).fold(coarse.to_vec(), |values, axis| self.along::<C>(axis, &values, false))
+    }
+
+    /// The transpose.
+    pub fn restrict<const C: usize>(&self, fine: &[f64]) -> Vec<f64> {
+        (0..D).rev().fold(fine.to_vec(), |values, axis| self.along::<C>(axis, &values, true))
+    }
+
+    /// Along one axis: those before it are fine, those after it coarse.
+    fn along<const C: usize>(&self, axis: usize, from: &[f64], back: bool) -> Vec<f64> {
+        let inner = self.coarse[axis + 1..].iter().product::<usize>() * C;
+        let [fine, coarse] = [self.parents[axis].len(), self.coarse[axis]].map(|nodes| nodes * inner);
+        let (length, size) = if back { (fine, coarse) } else { (coarse, fine) };
+        let mut to = vec![0.0; from.len() / length * size];
+        for (from, to) in from.chunks_exact(length).zip(to.chunks_exact_mut(size)) {
+            for (child, parents) in self.parents[axis].iter().enumerate() {
+                for (parent, weight) in parents {
+                    let (at, into) = if back { (child, *parent) } else { (*parent, child) };
+                    let values = &from[at * inner..][..inner];
+                    let sums = &mut to[into * inner..][..inner];
+                    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+                }
+            }
+        }
+        to
+    }
+
+    /// P^T A P, and its unknowns: components without stiffness are none.
+    pub fn galerkin<const C: usize>(
+        &self,
+        (stencil, free): Operator<'_, D, C>,
+        coarse: &Grid<D>,
+    ) -> (Stencil<D, C>, Vec<bool>) {
+        let mut made = Stencil::<D, C>::new(coarse);
+        let mut reached = vec![false; coarse.nodes()];
+        let nodes: usize = self.parents.iter().map(Vec::len).product();
+        for node in (0..nodes).filter(|node| free[node * C..(node + 1) * C].contains(&true)) {
+            self.parents_of(self.split(node), |at, _, _| reached[at] = true);
+        }
+        made.keep(|node| reached[node]);
+        let mut sums = Vec::new();
+        for node in 0..nodes {
+            let around: Vec<([usize; D], usize, &[f64])> =
+                stencil.blocks(node).map(|(other, block)| (self.split(other), other, block)).collect();
+            if around.is_empty() {
+                continue;
+            }
+            // The box of coarse nodes that the neighbours are made of.
+            let ends: [(usize, usize); D] = std::array::from_fn(|axis| {
+                let parents = around.iter().flat_map(|(at, ..)| &self.parents[axis][at[axis]]);
+                parents.fold((usize::MAX, 0), |(first, last), (at, _)| (first.min(*at), last.max(*at)))
+            });
+            let width = |axis: usize| ends[axis].1 - ends[axis].0 + 1;
+            sums.clear();
+            sums.resize((0..D).map(width).product::<usize>() * C * C, 0.0);
+            for (at, other, block) in around {
+                let mut known = [[0.0; C]; C];
+                for (i, j) in (0..C * C).map(|k| (k / C, k % C)) {
+                    known[i][j] = if free[node * C + i] && free[other * C + j] { block[i * C + j] } else { 0.0 };
+                }
+                let known = known.as_flattened();
+                self.parents_of(at, |_, place, weight| {
+                    let local = (0..D).fold(0, |local, axis| local * width(axis) + place[axis] - ends[axis].0);
+                    let sums = &mut sums[local * C * C..][..C * C];
+                    sums.iter_mut().zip(known).for_each(|(sum, value)| *sum += weight * value);
+                });
+            }
+            self.parents_of(self.split(node), |parent, _, weight| {
+                for (local, sum) in sums.chunks_exact(C * C).enumerate() {
+                    let mut rest = local;
+                    let mut place = [0; D];
+                    for axis in (0..D).rev() {
+                        place[axis] = ends[axis].0 + rest % width(axis);
+                        rest /= width(axis);
+                    }
+                    made.add_block(parent, self.joined(&place), weight, sum);
+                }
+            });
+        }
+        let least = made.largest_diagonal() * f64::EPSILON;
+        let free = (0..coarse.nodes() * C).map(|component| made.on_diagonal(component) > least).collect();
+        (made, free)
+    }
+
+    /// Visits the coarse nodes that a node is made of: their numbers, places and weights.
+    fn parents_of(&self, at: [usize; D], mut visit: impl FnMut(usize, [usize; D], f64)) {
+        let lists: [&[(usize, f64)]; D] = std::array::from_fn(|axis| &self.parents[axis][at[axis]][..]);
+        for number in 0..lists.iter().map(|list| list.len()).product() {
+            let (mut rest, mut weight, mut place) = (number, 1.0, [0; D]);
+            for axis in (0..D).rev() {
+                let (parent, part) = lists[axis][rest % lists[axis].len()];
+                rest /= lists[axis].len();
+                weight *= part;
+                place[axis] = parent;
+            }
+            visit(self.joined(&place), place, weight);
+        }
+    }
+
+    /// Place along every axis of a node of the window.
+    fn split(&self, mut node: usize) -> [usize; D] {
+        let mut at = [0; D];
+        for axis in (0..D).rev() {
+            at[axis] = node % self.parents[axis].len();
+            node /= self.parents[axis].len();
+        }
+        at
+    }
+
+    /// Number of a node of the coarse window.
+    fn joined(&self, place: &[usize; D]) -> usize {
+        (0..D).fold(0, |number, axis| number * self.coarse[axis] + place[axis])
+    }
+}
+
+/// Every other place of the breakpoints, each as often as it stands.
+fn coarser(axis: &KnotVector) -> KnotVector {
+    let all: Vec<f64> = (0..=axis.cells()).map(|i| axis.breakpoint(i)).collect();
+    let runs: Vec<&[f64]> = all.chunk_by(|a, b| a == b).collect();
+    let last = runs.len() - 1;
+    if last < FEWEST {
+        return axis.clone();
+    }
+    let kept = runs.iter().enumerate().filter(|(number, _)| number % 2 == 0 || *number == last);
+    let kept: Vec<f64> = kept.flat_map(|(_, run)| run.to_vec()).collect();
+    KnotVector::graded(&kept, axis.order()).unwrap_or_else(|_| axis.clone())
+}
+
+/// Weights of a function in the coarse ones, its discrete B-splines (Cohen, Lyche and Riesenfeld 1980, Comput. Graph.
+/// Image Process. 14, 87-111).
+fn weights(fine: &KnotVector, coarse: &KnotVector, number: usize) -> Vec<(usize, f64)> {
+    let (q, knot) = (fine.order(), |j: usize| coarse.knot(j));
+    // The last coarse cell with a length that begins at or before the function does.
+    let begins = (q..coarse.functions()).rev().find(|&j| knot(j) <= fine.knot(number)).unwrap_or(q);
+    let mut found = vec![1.0];
+    for degree in 1..=q {
+        let x = fine.knot(number + degree);
+        let first = begins - degree;
+        let part = |j: usize| {
+            let length = knot(j + degree) - knot(j);
+            if length > 0.0 { (x - knot(j)) / length } else { 0.0 }
+        };
+        let old = |j: usize| if j > first && j <= begins { found[j - first - 1] } else { 0.0 };
+        found = (first..=begins).map(|j| part(j) * old(j) + (1.0 - part(j + 1)) * old(j + 1)).collect();
+    }
+    found.into_iter().enumerate().map(|(k, weight)| (begins - q + k, weight)).filter(|(_, w)| *w != 0.0).collect()
+}
