@@ -293,7 +293,7 @@ pub fn extents<const D: usize>(
             let (reach, _) = reach(reaching, p, &normal);
             let share = near.distance / reach;
             cut = cut.min(share.max(0.0));
-            if share > 1.0 && share < flush && is_beside_a_side(body, &pose, &x, (&normal, near.distance)) {
+            if share > 1.0 + ROUNDING && share < flush && is_beside_a_side(body, &pose, &x, (&normal, near.distance)) {
                 let off_it = x - normal * (near.distance - ROUNDING * reach);
                 flush = if is_soil(&off_it) { share } else { flush };
             }
