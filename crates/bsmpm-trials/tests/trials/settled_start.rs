@@ -163,6 +163,20 @@ fn a_slope_of_sand_near_its_friction_angle_begins_at_rest() {
     }
 }
 
+/// Elastic soil is pulled at a slope's top, where a law that has nothing without pressure has no state to start from.
+#[test]
+fn a_slope_of_cam_clay_begins_at_rest() {
+    let clay = "modified-cam-clay\"\nkappa = 0.02\nlambda = 0.12\ncritical_ratio = 1.0\nocr = 2.5";
+    let case = changed(SAND, "mohr-coulomb\"", clay);
+    let case = changed(&case, "cohesion = 0.0\nfriction = 30.0\n", "");
+    let case = changed(&case, "100 MPa", "10 MPa");
+    let case = changed(&case, "[8, 10], [0, 10]", "[8, 6], [0, 6]");
+    let scratch = Scratch::with_case(&changed(&case, "k0 = 0.5", "k0 = 0.7"));
+    scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
+    let moved = at(&history(&scratch.path("out")), "max-displacement", 1.0);
+    assert!(initial(&scratch, "out").unbalance < 1e-4 && moved < 1e-4, "{moved:e} m"); // measured 5.5e-5
+}
+
 /// Shaken from the start: at rest before, the same on three ranks, and to the bit however it is cut.
 #[test]
 fn a_settled_slope_is_shaken_the_same_on_any_ranks_and_in_parts() {

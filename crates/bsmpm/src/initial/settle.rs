@@ -16,6 +16,7 @@ use crate::solve::round_off::RoundOff;
 use crate::step::commit;
 use crate::step::report::Counts;
 use crate::step::residual::Residual;
+use crate::tensor::Symmetric;
 
 /// Energy measure of a round: the displacement, which goes, need not be known.
 const ANY: f64 = 1.0;
@@ -25,6 +26,9 @@ const WITHIN: f64 = 0.5;
 const MOST_ROUNDS: usize = 60;
 /// Least part of what is out of balance that a round takes on.
 const LEAST: f64 = 1.0 / 64.0;
+
+/// Least vertical pressure, of the largest, from which a law starts that has no state without pressure.
+const PRESSED: f64 = 1e-2;
 
 /// What a search for equilibrium took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,8 +50,15 @@ pub fn set_spread<K: Kinematics<D>, const D: usize>(
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<(), StepError> {
     set_elastic(model, points, (halo, solver))?;
+    let mut most = [points.sigma.iter().map(|stress| -stress.0[D - 1]).fold(0.0, f64::max)];
+    halo.maximum(&mut most);
     for p in 0..points.len() {
         let mut stress = points.sigma.at(p);
+        // A law that has no state without pressure cannot start where elastic soil is pulled, as at a slope's top.
+        if !model.materials[usize::from(points.material[p])].is_linear() && stress.0[D - 1] > -PRESSED * most[0] {
+            stress = Symmetric::default();
+            stress.0[D - 1] = -PRESSED * most[0];
+        }
         let side = k0(points.material[p]) * stress.0[D - 1];
         (0..3).filter(|k| *k != D - 1).for_each(|k| stress.0[k] = side);
         let law = model.materials[usize::from(points.material[p])].at(points.height(p));
