@@ -178,7 +178,8 @@ impl FieldName {
         let room = 0.05 * (high - low);
         let end = |word: &str, value: f64| {
             let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-            format!(", {word} {rounded} {}", self.source().unit)
+            let unit = if self.source().unit == "-" { "" } else { self.source().unit };
+            format!(", {word} {rounded} {unit}").trim_end().to_owned()
         };
         let below = if least < low - room { end("least", least) } else { String::new() };
         below + &if largest > high + room { end("largest", largest) } else { String::new() }
