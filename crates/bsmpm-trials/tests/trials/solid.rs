@@ -262,12 +262,16 @@ fn newtons_directions_are_sought_around_a_preconditioner() {
         (1, "incomplete-cholesky", "auto"),
         (1, "multigrid-cycles", "newton"),
         (1, "spline-multigrid", "newton"),
-        (2, "spline-multigrid", "auto"),
+        (2, "spline-multigrid", "newton"),
     ] {
-        let name = format!("{linear}-{nonlinear}");
+        let name = format!("{linear}-{nonlinear}-{ranks}");
         run(&name, ranks, linear, nonlinear);
         agree(&scratch.path(&name), &scratch.path("factor"));
     }
+    // On several ranks a factor takes its place.
+    let pc = |name: &str| manifest(&scratch.path(name)).linear["stiffness"].pc.clone();
+    let splines = ["spline-multigrid-newton-1", "spline-multigrid-newton-2"].map(pc);
+    assert_eq!(splines, ["shell (multigrid of splines)", "shell (dissection)"]);
     let yielding = manifest(&scratch.path("factor")).initial.is_some();
     assert!(yielding, "it starts from an equilibrium");
 }
