@@ -168,8 +168,8 @@ impl IndicatorState {
         }
         if let Some(lost) = self.water {
             let meaning = "water that is not accounted for, over the largest of what left through the ground's surface, what came \
-                           in there, and what its points took in and gave off: what the iterations leave, in a step up to force_tolerance of what moves \
-                           there or 1e-13 of the ground's volume";
+                           in there, and what its points took in and gave off: what the iterations leave, in a step up to \
+                           force_tolerance of what moves there or 1e-13 of the ground's volume";
             rows.push(row("water-balance", lost, meaning, WATER));
         }
         rows
