@@ -36,7 +36,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 continue;
             }
             let Simulation { model, points, halo, .. } = &self.simulation;
-            let rows = profile::rows(profile, (model, self.case.grid.lower()), points, &**halo);
+            let rows = profile::rows(profile, (model, self.case.grid.lower(), time), points, &**halo);
             let ledger = self.ledger.as_mut();
             let written = ledger.map_or(Ok(()), |ledger| ledger.profile(number, (step, time), &rows));
             self.require(written);
