@@ -79,8 +79,8 @@ fn narrow(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let Some(entry) = retention.map(|of| of.curve.entry()).filter(|entry| NARROW * *entry < cell) else { continue };
         report.warn(format!(
             "material.{}.retention: air enters at a suction of {entry:e} m, {:.0} times less than a cell: pores are full or \
-             empty, and the iterations follow that badly (a column drained with up to 15 times as many of them at 1/50, and \
-             ended early from 1/100 on, however short its steps); a curve that begins at a tenth of a cell empties it as well",
+             empty, and iterations follow that badly (a column that drained took 14 times as many at 1/50, and ended early at \
+             1/100 and below, its steps cut to 1/1024); a curve that begins at a tenth of a cell empties it as well",
             named.name,
             cell / entry
         ));
