@@ -53,6 +53,8 @@ pub struct Around<'a, const D: usize> {
     pub bodies: &'a [Range<u64>],
     /// water at the time of the frame
     pub water: Option<PoreWater<'a, D>>,
+    /// m/s  of every point, if frames show it; empty where no water flows
+    pub fluxes: &'a [Vector<D>],
     /// what frames show on request
     pub fields: &'a [FrameField],
 }
@@ -165,8 +167,7 @@ impl<const D: usize> Around<'_, D> {
             FrameField::Porosity => of_water(&|water| water.porosity(p)),
             FrameField::Saturation => of_water(&|water| water.saturation(p)),
             FrameField::Flux => {
-                let flux = self.water.map_or_else(Vector::zeros, |water| water.flux(p));
-                return row.extend(spatial(&flux));
+                return row.extend(spatial(self.fluxes.get(p).unwrap_or(&Vector::zeros())));
             }
             FrameField::TotalStress => {
                 return row.extend(self.water.map_or_else(sigma, |water| water.total_stress(p)).0);

@@ -8,36 +8,39 @@ use bsmpm::observe::place::{self, Configuration};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::tensor::{Symmetric, Vector};
+use bsmpm::water::observed::PoreWater;
 use bsmpm_scene::Profile;
 use bsmpm_scene::model::vector;
 use bsmpm_scene::words::ProfileQuantity;
 
 /// Numbers that a row is made of: displacement since the start and since displacements count, velocity, stress, plastic
-/// strain.
-const FIELDS: usize = 3 + 3 + 3 + 6 + 1;
+/// strain, pore pressure and the excess in it.
+const FIELDS: usize = 3 + 3 + 3 + 6 + 1 + 2;
 
 /// A row for every place that material is at: distance along the line, present place, then what the profile tells;
-/// `lower` is the grid's corner. Collective.
+/// `lower` is the grid's corner, `t` the time. Collective.
 pub fn rows<K: Kinematics<D>, const D: usize>(
     profile: &Profile,
-    (model, lower): (&Model<K, D>, [f64; 3]),
+    (model, lower, t): (&Model<K, D>, [f64; 3], f64),
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Vec<Vec<f64>> {
     let places = profile.places();
     let local: Vec<Vector<D>> = places.iter().map(|(_, at)| vector::<D, _>(*at) - vector(lower)).collect();
     let configuration = if profile.fixed { Configuration::Present } else { Configuration::Initial };
+    let water = PoreWater::of(model, points, t);
     let fields = |p: usize| {
         let velocity = points.motion.as_ref().map_or(Vector::zeros(), |motion| motion.v[p]);
         let vectors = [points.u[p], points.displacement(p), velocity].map(|vector| gather::spatial(&vector));
-        let numbers = vectors.into_iter().flatten().chain(points.sigma.at(p).0).chain([points.eps_p[p]]);
+        let pores = water.map_or([0.0; 2], |water| [water.pressure(p), water.excess(p)]);
+        let numbers = vectors.into_iter().flatten().chain(points.sigma.at(p).0).chain([points.eps_p[p]]).chain(pores);
         let mut fields = [0.0; FIELDS];
         fields.iter_mut().zip(numbers).for_each(|(field, number)| *field = number);
         fields
     };
     let found = place::values::<K, D, _>(&model.grid, points, (&local, configuration), fields, halo);
     let row = |((distance, at), found): (&(f64, [f64; 3]), &Option<[f64; FIELDS]>)| {
-        let [ux, uy, uz, dx, dy, dz, vx, vy, vz, xx, yy, zz, xy, yz, xz, plastic] = (*found)?;
+        let [ux, uy, uz, dx, dy, dz, vx, vy, vz, xx, yy, zz, xy, yz, xz, plastic, pore, excess] = (*found)?;
         let moved = if profile.fixed { [0.0; 3] } else { [ux, uy, uz] };
         let stress = Symmetric([xx, yy, zz, xy, yz, xz]);
         let mut row = vec![*distance];
@@ -50,6 +53,8 @@ pub fn rows<K: Kinematics<D>, const D: usize>(
                 ProfileQuantity::P => row.push(invariants::pressure(&stress)),
                 ProfileQuantity::Q => row.push(invariants::deviatoric(&stress)),
                 ProfileQuantity::PlasticStrain => row.push(plastic),
+                ProfileQuantity::PorePressure => row.push(pore),
+                ProfileQuantity::ExcessPressure => row.push(excess),
             }
         }
         Some(row)

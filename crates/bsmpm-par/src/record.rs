@@ -188,7 +188,7 @@ impl<const D: usize> Recorder<D> {
                 Quantity::PorePressure { .. } | Quantity::Pore { .. } => {
                     let id = self.followed[number].unwrap_or(u64::MAX);
                     let water = PoreWater::of(model, points, t);
-                    pore((history.quantity.measurement(), water), id, points, halo)
+                    pore::<K, D>((history.quantity.measurement(), water), id, (&model.grid, points), halo)?
                 }
                 Quantity::PorePressures { .. } => {
                     let water = PoreWater::of(model, points, t);

@@ -73,6 +73,7 @@ impl Need {
                             materials: &simulation.model.materials,
                             bodies: &[],
                             water: None,
+                            fluxes: &[],
                             fields: &case.output.fields,
                         },
                     ),

@@ -40,6 +40,8 @@ pub struct Words {
     pub words: &'static [(&'static str, &'static str)],
     /// Words that are not available yet.
     pub later: &'static [&'static str],
+    /// Words that others use, and which of these is meant.
+    pub misnomers: &'static [(&'static str, &'static str)],
 }
 
 impl Words {

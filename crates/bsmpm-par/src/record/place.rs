@@ -1,6 +1,7 @@
 //! Quantities at a place: of the point that is followed, of the material there, of a section.
 
 use crate::gather::shown;
+use bsmpm::error::StepError;
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
@@ -63,24 +64,25 @@ pub(super) fn at_surface<K: Kinematics<D>, const D: usize, const C: usize>(
 }
 
 /// A quantity of the pore water of the point of an id; zero without it.
-pub(super) fn pore<const D: usize>(
+pub(super) fn pore<K: Kinematics<D>, const D: usize>(
     (measured, water): (Measurement, Option<PoreWater<'_, D>>),
     id: u64,
-    points: &Points<D>,
+    (grid, points): (&Grid<D>, &Points<D>),
     halo: &dyn Halo,
-) -> Vec<f64> {
+) -> Result<Vec<f64>, StepError> {
     let number = |of: &dyn Fn(PoreWater<'_, D>, usize) -> f64| {
         observe::at_point(points, id, halo, |p| [water.map_or(0.0, |water| of(water, p))]).to_vec()
     };
-    match measured {
+    Ok(match measured {
         Measurement::Flux => {
-            let flux = |p: usize| water.map_or([0.0; D], |water| water.flux(p).into());
+            let fluxes = water.map(|water| water.fluxes::<K>(grid, halo)).transpose()?;
+            let flux = |p: usize| fluxes.as_ref().map_or([0.0; D], |fluxes| fluxes[p].into());
             observe::at_point(points, id, halo, flux).to_vec()
         }
         Measurement::ExcessPressure => number(&|water, p| water.excess(p)),
         Measurement::Porosity => number(&|water, p| water.porosity(p)),
         _ => number(&|water, p| water.pressure(p)),
-    }
+    })
 }
 
 /// Forces across a section, in the order of their columns; none across one that has lost its material.

@@ -36,7 +36,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 continue;
             }
             let Simulation { model, points, halo, .. } = &self.simulation;
-            let rows = profile::rows(profile, (model, self.case.grid.lower()), points, &**halo);
+            let rows = profile::rows(profile, (model, self.case.grid.lower(), time), points, &**halo);
             let ledger = self.ledger.as_mut();
             let written = ledger.map_or(Ok(()), |ledger| ledger.profile(number, (step, time), &rows));
             self.require(written);
@@ -65,8 +65,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let moment = FrameMoment { step, time, lower: gather::spatial(&vector::<D, _>(self.case.grid.lower())) };
         let (names, fields) = (self.names(), &self.case.output.fields);
         let bodies = if fields.contains(&FrameField::Body) { self.case.ids() } else { Vec::new() };
-        let around =
-            Around { materials: &model.materials, bodies: &bodies, water: PoreWater::of(model, points, time), fields };
+        let water = PoreWater::of(model, points, time);
+        let flows = water.filter(|_| fields.contains(&FrameField::Flux));
+        let fluxes = flows.map(|water| water.fluxes::<K>(&model.grid, &**halo)).transpose();
+        let fluxes = fluxes.unwrap_or_else(|error| launch::end(&world, exit::BUG, &error)).unwrap_or_default();
+        let around = Around { materials: &model.materials, bodies: &bodies, water, fluxes: &fluxes, fields };
         let mut frame = Gathering::new(&world, (points, around), projected.as_deref(), moment);
         let written = match &mut self.ledger {
             Some(ledger) => {

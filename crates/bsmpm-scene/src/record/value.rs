@@ -247,7 +247,8 @@ impl ValueReader<'_, '_> {
         if words.later.contains(&text.as_str()) {
             return self.fail(node, format!("\"{text}\" is not available yet; allowed: {}", self.kind));
         }
-        let near = hint(text, words.words());
+        let meant = words.misnomers.iter().find(|(word, _)| word == text);
+        let near = meant.map_or_else(|| hint(text, words.words()), |(_, meant)| format!(": {meant}"));
         self.fail(node, format!("expected {}, found {}{near}", self.kind, node.show()))
     }
 

@@ -40,6 +40,12 @@ pub(super) static DRAIN: Table = Table {
         ),
         key("pressure", Quantity(In::Stress, Range::ANY), Optional, "pore pressure there instead"),
         key(
+            "pressure_path",
+            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Stress, Range::ANY)]),
+            Optional,
+            "rows [t, p] instead, t increasing; linear between, constant before the first and after the last",
+        ),
+        key(
             "seepage",
             Flag,
             Optional,
@@ -49,7 +55,7 @@ pub(super) static DRAIN: Table = Table {
     exclusive: &[
         one_of(&["face", "from", "circle", "surface", "rectangle", "disc"], true),
         one_of(&["face", "to", "circle", "surface", "rectangle", "disc"], true),
-        one_of(&["head", "head_path", "pressure", "seepage"], false),
+        one_of(&["head", "head_path", "pressure", "pressure_path", "seepage"], false),
     ],
 };
 
@@ -58,6 +64,12 @@ pub(super) static INFLOW: Table = Table {
     doc: "Water that is put in through a segment of a body's surface (solid: a rectangle or disc), with which it goes",
     keys: &[
         key("name", Name, Optional, "what it is called where it is told of, and by stages"),
+        key(
+            "face",
+            Choice(Side::WORDS),
+            Optional,
+            "a face of the grid: what of it lies between the ends of the permeable bodies there",
+        ),
         key("from", PLACE, Optional, "one end of the segment at the start"),
         key("to", PLACE, Optional, "the other end"),
         key(
@@ -82,8 +94,8 @@ pub(super) static INFLOW: Table = Table {
         ),
     ],
     exclusive: &[
-        one_of(&["from", "rectangle", "disc"], true),
-        one_of(&["to", "rectangle", "disc"], true),
+        one_of(&["face", "from", "rectangle", "disc"], true),
+        one_of(&["face", "to", "rectangle", "disc"], true),
         one_of(&["rate", "rate_path"], true),
     ],
 };

@@ -1,5 +1,6 @@
 //! Water that flows: soils, drains and inflows.
 
+mod crossing;
 mod leaks;
 mod shown;
 
@@ -10,7 +11,7 @@ use super::STANDARD_GRAVITY;
 use super::load::{circle, increasing};
 use super::place;
 use super::site::{AroundStrip, places, plate, segment};
-use crate::case::{Acting, Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Site, Stage, Support};
+use crate::case::{Acting, Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Plate, Site, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
@@ -27,9 +28,10 @@ const AT: f64 = 1e-9;
 const MOST_PERMEABLE: f64 = 1.0;
 
 /// Drainage that the case gives a material.
-fn drainage(root: &Record, material: &Record) -> Drainage {
-    let given = |record: &Record| if record.gives("drainage") { record.word("drainage") } else { None };
-    given(material).or_else(|| given(root.record("water")?)).unwrap_or(Drainage::Given)
+fn drainage(root: &Record, material: &Record) -> Option<Drainage> {
+    let says = |record: &&Record| record.gives("drainage");
+    let record = Some(material).filter(says).or_else(|| root.record("water").filter(says));
+    record.map_or(Some(Drainage::Given), |record| record.word("drainage"))
 }
 
 /// The flow of water, if any material has it; the outer option is `None` after an error.
@@ -112,7 +114,7 @@ fn unit_weight(root: &Record) -> Option<f64> {
 /// What a material is to water; the outer option is `None` after an error.
 fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Option<Soil<3>>> {
     const FLOWING: [&str; 4] = ["porosity", "permeability", "permeability_law", "retention"];
-    let drainage = drainage(root, record);
+    let drainage = drainage(root, record)?;
     let needs: &[&str] = match drainage {
         Drainage::Given => &[],
         Drainage::Undrained => &FLOWING[..1],
@@ -322,6 +324,9 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
     if record.gives("head_path") {
         return Some(Given::Head(course(record, "head_path", report)?));
     }
+    if record.gives("pressure_path") {
+        return Some(Given::Pressure(course(record, "pressure_path", report)?));
+    }
     let constant = |key: &str| Some(Course(vec![(0.0, record.number(key)?)]));
     if record.gives("head") {
         return constant("head").map(Given::Head);
@@ -396,12 +401,31 @@ fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Optio
         false => record.number("rate").map(|rate| Course(vec![(0.0, rate)])),
     };
     let runs_off = record.flag("runs_off")?;
-    Some(Inflow { site: ground.site(record, report)?, rate: rate?, runs_off })
+    let site = if record.gives("face") { along_face(record, ground, report)? } else { ground.site(record, report)? };
+    Some(Inflow { site, rate: rate?, runs_off })
+}
+
+/// What of a face of the grid lies between the ends of the permeable bodies there.
+fn along_face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Site> {
+    let (grid, face) = (ground.around.grid?, face(record, ground, report)?);
+    let slack = AT * grid.axes[face.axis].shortest();
+    let at = if face.upper { grid.upper() } else { grid.lower() }[face.axis];
+    let there = ground.permeable().into_iter().map(|body| body.region.corners());
+    let there = there.filter(|corners| (corners[usize::from(face.upper)][face.axis] - at).abs() <= slack);
+    let ends = there.reduce(|[lower, upper], [a, b]| {
+        [[0, 1, 2].map(|axis| lower[axis].min(a[axis])), [0, 1, 2].map(|axis| upper[axis].max(b[axis]))]
+    });
+    let [mut lower, mut upper] = ends?;
+    (lower[face.axis], upper[face.axis]) = (at, at);
+    Some(match grid.dims() {
+        2 => Site::Segment { from: [lower[0], lower[1]], to: [upper[0], upper[1]] },
+        _ => Site::Plate(Plate { lower, upper, round: false }),
+    })
 }
 
 /// Whether water flows, or is kept from flowing, in any material.
 pub(super) fn flows(root: &Record) -> bool {
-    root.named("material").iter().any(|(_, record)| drainage(root, record) != Drainage::Given)
+    root.named("material").iter().any(|(_, record)| drainage(root, record) != Some(Drainage::Given))
 }
 
 /// The number of the drain that a history names, in the order of the file, by its name or its face; the outer option is

@@ -47,6 +47,9 @@ fn read(
     if regime == Some(Regime::QuasiStatic) && quantities.contains(&ProfileQuantity::Velocity) {
         record.error("quantities", "there is no velocity in a quasi-static analysis", report);
     }
+    if quantities.contains(&ProfileQuantity::ExcessPressure) && !super::flow::flows(root) {
+        record.error("quantities", "no water flows: there is no \"excess-pressure\"", report);
+    }
     let mut times = if record.gives("times") { record.numbers("times")?.to_vec() } else { Vec::new() };
     if record.gives("times") && times.is_empty() {
         record.error("times", "it is never told: give a time, or leave the key out for all frames", report);

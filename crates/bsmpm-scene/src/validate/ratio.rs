@@ -20,7 +20,12 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         return;
     }
     if root.gives("water") || case.flow.is_some() {
-        let message = "[water] gives the pore pressure, too: give one of them";
+        let message = if case.flow.is_some() {
+            "is the pore pressure of water that does not flow: with \"coupled\" or \"undrained\" soil the flow makes it, from \
+             that of [water] at the start; leave ru out, or drainage"
+        } else {
+            "[water] gives the pore pressure, too: give one of them"
+        };
         material.error(KEY, message, report);
     }
     match &case.gravity {

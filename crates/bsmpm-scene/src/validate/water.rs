@@ -2,7 +2,7 @@
 
 use super::STANDARD_GRAVITY;
 use super::load::increasing;
-use crate::case::{Case, Gravity, Support, Water};
+use crate::case::{Body, Case, Gravity, Support, Water};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -196,10 +196,14 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
         let named = &case.materials[number];
         named.saturated.or(named.density).unwrap_or(0.0) * gravity.acceleration[case.grid.dims() - 1].abs()
     };
+    let up = case.grid.dims() - 1;
+    let highest = water.table.levels().into_iter().flatten().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
+    let is_wet = |body: &Body| body.region.corners()[0][up] < highest;
     for (number, (name, written)) in record.named("material").iter().enumerate() {
-        if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number) {
+        if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number && is_wet(body))
+        {
             let message = format!(
-                "missing or too little: material.{name} is lighter than water, {:.6} kN/m3, and would float",
+                "missing or too little: material.{name} is lighter than water, {:.6} kN/m3, and would float where it lies below the table",
                 water.unit_weight * 1e-3
             );
             let key = ["saturated_unit_weight", "unit_weight", "density"].into_iter().find(|key| written.gives(key));

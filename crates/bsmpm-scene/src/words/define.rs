@@ -1,15 +1,17 @@
 //! How words are defined: for an enum of another crate, or together with the enum.
 
-/// The words of an enum: `Variant = "word" | "word of old": "what it means",` and those that are not available `later`.
+/// The words of an enum: `Variant = "word" | "word of old": "what it means",` those that are not available `later`, and
+/// `misnomers` with what is meant by them.
 macro_rules! words {
     ($type:ident {
         $($variant:ident = $word:literal $(| $old:literal)*: $doc:expr,)+
-    } $(later [$($later:literal),+])?) => {
+    } $(later [$($later:literal),+])? $(misnomers [$($misnomer:literal: $meant:literal),+])?) => {
         impl $crate::words::Word for $type {
             const WORDS: $crate::words::Words = $crate::words::Words {
                 auto: None,
                 words: &[$(($word, $doc), $(($old, concat!("earlier name of ", $word)),)*)+],
                 later: &[$($($later),+)?],
+                misnomers: &[$($(($misnomer, $meant)),+)?],
             };
 
             fn of(word: &str) -> Option<Self> {
@@ -32,7 +34,7 @@ macro_rules! words {
 macro_rules! choice {
     ($(#[$about:meta])+ pub enum $type:ident {
         $($(#[doc = $doc:literal])+ $variant:ident = $word:literal,)+
-    } $(later [$($later:literal),+])?) => {
+    } $(later [$($later:literal),+])? $(misnomers [$($misnomer:literal: $meant:literal),+])?) => {
         $(#[$about])+
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum $type {
@@ -41,7 +43,7 @@ macro_rules! choice {
 
         words! { $type {
             $($variant = $word: concat!($($doc),+),)+
-        } $(later [$($later),+])? }
+        } $(later [$($later),+])? $(misnomers [$($misnomer: $meant),+])? }
 
         impl std::fmt::Display for $type {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

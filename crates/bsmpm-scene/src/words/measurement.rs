@@ -27,7 +27,8 @@ choice! {
         /// Mean Cauchy stress, positive in tension, weighted with the points' present volumes.
         MeanStress = "mean-stress",
         /// What the stress transmits across the line from `from` to `to`, per metre of thickness: of the material on
-        /// its right on that on its left. What of the line is out of the body counts for nothing. Of a solid across a
+        /// its right on that on its left: the effective stress, without what water presses with. What of the line is
+        /// out of the body counts for nothing. Of a solid across a
         /// `rectangle` or a `disc`, of the material that its normal axis points to on that before; t1 and t2 are the
         /// axes that follow the normal one (y and z of x, z and x of y, x and y of z), and turn with the section.
         SectionForces = "section-forces",
@@ -36,7 +37,8 @@ choice! {
         /// Force of a face's supports, or of a strip or what else moves, on the body, per metre of thickness. At
         /// an edge that two faces hold, a force counts for the face that it is normal to; where a strip or what moves
         /// meets a face that is fixed, what the nodes of the edge hold counts for that face (a fixed bottom has 4 % of
-        /// the thrust on a wall of 16 cells, of 8 cells 8 %; a roller has none).
+        /// the thrust on a wall of 16 cells, of 8 cells 8 %; a roller has none). In water it is that of the grains and
+        /// of the excess pressure, without what still water presses with.
         Reaction = "reaction",
         /// Moment of the force of a strip or what else moves about its middle, counter-clockwise, per metre of
         /// thickness.
@@ -60,7 +62,8 @@ choice! {
         /// Share of pores in the volume of the point nearest to `at` at the start, where water flows.
         Porosity = "porosity",
         /// Volume of water that flows through the soil per area and time (Darcy), relative to the grains, of the point
-        /// nearest to `at` at the start.
+        /// nearest to `at` at the start. In cells at the surface of ground that has deformed much it jumps from cell
+        /// to cell, by a third and more: what drains let through does not.
         Flux = "flux",
         /// Volume of water that has left the ground through a drain since the start, per metre of thickness; all drains
         /// less all inflows unless one is named.

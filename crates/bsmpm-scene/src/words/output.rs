@@ -86,6 +86,10 @@ choice! {
         Q = "q",
         /// Accumulated plastic strain.
         PlasticStrain = "plastic-strain",
+        /// Pressure of the water in the pores (Pa), positive in compression.
+        PorePressure = "pore-pressure",
+        /// Pore pressure above that of the still water (Pa), where water flows.
+        ExcessPressure = "excess-pressure",
     }
 }
 
@@ -102,6 +106,8 @@ impl ProfileQuantity {
             Self::P => (&["p"], "Pa"),
             Self::Q => (&["q"], "Pa"),
             Self::PlasticStrain => (&["plastic-strain"], "-"),
+            Self::PorePressure => (&["pore-pressure"], "Pa"),
+            Self::ExcessPressure => (&["excess-pressure"], "Pa"),
         }
     }
 }

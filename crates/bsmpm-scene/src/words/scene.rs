@@ -104,7 +104,9 @@ choice! {
         Coupled = "coupled",
         /// It stays where it is, and its excess pressure is an unknown.
         Undrained = "undrained",
-    }
+    } misnomers [
+        "drained": "soil that drains in time is \"coupled\", with a permeability; soil without excess pressure is \"given\""
+    ]
 }
 
 choice! {

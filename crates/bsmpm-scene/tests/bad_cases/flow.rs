@@ -30,7 +30,12 @@ pub const FLOW: &[Row] = &[
     row("permeability     = \"1e-9 m/s\"", "permeability = [1e-9, -1e-9]", "material.clay.permeability", "> 0"),
     row("porosity         = 0.6", "porosity = 60", "material.clay.porosity", "0 < porosity < 1"),
     row("porosity = 0.5", "porosity = 0.5\npermeability = 1e-9", "material.tight.permeability", "no meaning").down(1),
-    row("drainage = \"undrained\"", "drainage = \"drained\"", "material.tight.drainage", "expected one of \"given\""),
+    row(
+        "drainage = \"undrained\"",
+        "drainage = \"drained\"",
+        "material.tight.drainage",
+        "soil that drains in time is \"coupled\"",
+    ),
     row(
         CLAY,
         "model = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\npreconsolidation = 1e5",
@@ -80,18 +85,23 @@ pub const FLOW: &[Row] = &[
     row("face    = \"bottom\"", "circle  = { center = [2.0, 2.0], radius = 1.5 }", "drain.0.circle", "no body is at"),
     row("head    = \"3 m\"", "head = 3\npressure = 0", "drain.0.pressure", "").down(1),
     row("head    = \"3 m\"", "head = \"3 kPa\"", "drain.0.head", "expected a length"),
-    row("from      = [2.0, 2.0]", "from = [0.5, 3.0]", "drain.1.from", "lets no water through"),
-    row("from      = [2.0, 2.0]", "from = [2.0, 3.5]", "drain.1.from", "no body is at"),
+    row("from      = [2.0, 1.0]", "from = [0.5, 3.0]", "drain.1.from", "lets no water through"),
+    row("from      = [2.0, 1.0]", "from = [2.0, 3.5]", "drain.1.from", "no body is at"),
     row("[\"30 d\", 3.0]", "[\"0 d\", 3.0]", "drain.1.head_path", "t = 0 is not above 0"),
     row("surface  = true", "name = \"base\"\nsurface = true", "drain.2.name", "there is a drain `base` already"),
-    row("seepage = true", "seepage = false", "drain.3.seepage", "give true, or leave it out"),
+    row("seepage = true", "seepage = false", "drain.2.seepage", "give true, or leave it out"),
     row("head    = \"3 m\"", "seepage = true", "drain.0.seepage", "a face of the grid lets water both ways"),
     row(
         "seepage = true",
         "seepage = true\nhead = 2",
-        "drain.3.seepage",
-        "only one of head, head_path, pressure, seepage may be",
+        "drain.2.seepage",
+        "only one of head, head_path, pressure, pressure_path, seepage may be",
     ),
+    row("seepage = true", "head = 2", "inflow.0", "what is put in leaves there at once").down(15),
+    row("circle = { center = [4.0, 0.0], radius = 1.0 }", "face = \"bottom\"", "drain.4", "gives another pressure")
+        .up(1),
+    row("face = \"right\"", "face = \"top\"", "inflow.2.face", "no body of permeable soil lies at the face"),
+    row("[\"30 d\", \"5 kPa\"]", "[\"30 d\", \"5 m\"]", "drain.5.pressure_path", "expected a stress"),
     row("rate = \"10 mm/h\"", "rate = \"10 mm\"", "inflow.0.rate", "expected a velocity"),
     row("rate = \"10 mm/h\"\n", "", "inflow.0", "one of rate, rate_path").up(4),
     row("to   = [4.0, 2.0]\nrate = ", "to = [4.0, 9.0]\nrate = ", "inflow.0.to", "outside the grid"),
@@ -193,6 +203,36 @@ pub const WITHOUT_FLOW: &[Row] = &[
         .down(1),
     row("every = 0.5", "every = 0.5\nfields = [\"flux\"]", "output.fields", "no water flows").down(1),
 ];
+
+/// More rain than the ground takes, and walls and gaps that are thinner than the pressure's functions.
+#[test]
+fn rain_that_lifts_and_walls_that_leak_are_warned_of() {
+    let case = |changes: &[(&str, &str)]| {
+        let text =
+            changes.iter().fold(include_str!("seeping.toml").to_owned(), |text, (was, is)| text.replace(was, is));
+        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
+    };
+    let told = |warnings: &[String], of: &str| warnings.iter().any(|told| told.contains(of));
+    let (lifts, gap, wall) = ("inflow.0: 2.7", "a gap between bodies", "material.tight: a wall of it");
+    let whole = case(&[]);
+    assert!(![lifts, gap, wall].into_iter().any(|of| told(&whole, of)), "{whole:?}");
+    assert!(told(&case(&[("runs_off = true\n", "")]), lifts));
+    let steep = [("alpha = 2.0", "alpha = 100.0")];
+    assert!(told(&case(&steep), "100 times less than a cell") && !told(&whole, "times less than a cell"));
+    let clay = "box = { lower = [0.0, 0.0], upper = [4.0, 2.0] }\npoints_per_cell = 3\n";
+    let apart = |x: f64| {
+        format!(
+            "box = {{ lower = [0.0, 0.0], upper = [1.0, 2.0] }}\npoints_per_cell = 3\n[[body]]\nmaterial = \"clay\"\n\
+             box = {{ lower = [{x}, 0.0], upper = [4.0, 2.0] }}\npoints_per_cell = 3\n"
+        )
+    };
+    assert!(told(&case(&[(clay, &apart(1.5))]), gap));
+    let held = apart(1.5)
+        + "[[body]]\nmaterial = \"tight\"\nbox = { lower = [1.0, 0.0], upper = [1.5, 2.0] }\npoints_per_cell = 3\n";
+    assert!(told(&case(&[(clay, &held)]), wall));
+    let finer = ("cell  = \"1 m\"", "cell = 0.25");
+    assert!(!told(&case(&[(clay, &held), finer]), wall) && !told(&case(&[(clay, &apart(1.5)), finer]), gap));
+}
 
 /// Ground above the water table that stays full, and a step of the table that no point may see.
 #[test]

@@ -397,8 +397,10 @@ fn strength_falls_as_the_ground_can_drain() {
 /// Water that a head lets stand above the surface does not press on it.
 #[test]
 fn heads_above_the_surface_are_warned_of() {
+    let text = SEEPING.replace("surface  = true", "from = [3.0, 2.0]\nto = [4.0, 2.0]");
+    let text = text.replace("[2.0, 1.0]", "[2.0, 2.0]").replace("[3.0, 1.0]", "[3.0, 2.0]");
     let warned = |set: &[&str]| {
-        let warnings = valid(SEEPING, set).warnings;
+        let warnings = valid(&text, set).warnings;
         warnings.into_iter().filter(|warning| warning.contains("does not press on the ground")).collect::<Vec<_>>()
     };
     let found = warned(&[]);

@@ -1,9 +1,13 @@
 //! The pore water at the points, as histories and frames tell it.
 
+use crate::error::StepError;
 use crate::exact::Exact;
+use crate::grid::shape::Patch;
+use crate::grid::{Contributions, Grid, Shape};
+use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::observe::Part;
-use crate::parallel::Halo;
+use crate::parallel::{Halo, agreed};
 use crate::points::Points;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
@@ -95,8 +99,27 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         self.flow(p).map_or(0.0, |(_, soil)| soil.pores(J) / J)
     }
 
-    /// m/s  Darcy's flux relative to the grains at point `p`; zero where nothing flows, and before the first step
-    pub fn flux(&self, p: usize) -> Vector<D> {
+    /// m/s  Darcy's flux relative to the grains at every point; zero where nothing flows, and before the first step
+    ///
+    /// The balance has what the points of a cell let through together: where cells that deform have more of them, or
+    /// fewer, than fill it, the pressure's gradient is so much smaller, or larger. In cells that ground surrounds the
+    /// flux is that of the cell's volume, which does not jump with the count. The points must be sorted by cell. One
+    /// exchange with the neighbours.
+    pub fn fluxes<K: Kinematics<D>>(&self, grid: &Grid<D>, halo: &dyn Halo) -> Result<Vec<Vector<D>>, StepError> {
+        let shape = agreed(halo, Shape::at(grid, self.points), StepError::OtherRank)?;
+        let is_inside = inside(grid, &shape, halo);
+        let mut fluxes: Vec<Vector<D>> = (0..self.points.len()).map(|p| self.flux(p)).collect();
+        for patch in shape.patches().iter().filter(|patch| is_inside(patch)) {
+            let volume = |p: usize| self.points.volume[p] * self.points.F.at(p).determinant();
+            let filled =
+                patch.points.clone().map(volume).sum::<f64>() / grid.cell_volume::<K>(&grid.cell_at(patch.cell));
+            fluxes[patch.points.clone()].iter_mut().for_each(|flux| *flux *= filled);
+        }
+        Ok(fluxes)
+    }
+
+    /// m/s  by the pressure's gradient at point `p`
+    fn flux(&self, p: usize) -> Vector<D> {
         let J = self.mean_J(p);
         let conductivity = self.water.flow.as_ref().and_then(|flow| flow.permeability(self.points.material[p], J));
         let (Some(conductivity), Some(gradient)) = (conductivity, &self.points.pressure_gradient) else {
@@ -150,4 +173,30 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         };
         (0..self.points.len()).map(of)
     }
+}
+
+/// Which cells have ground in all cells around them: in the support of the functions in their middle. One exchange with
+/// the neighbours.
+fn inside<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, halo: &dyn Halo) -> impl Fn(&&Patch) -> bool {
+    let mut counts = Contributions::none(grid, 1, Vec::new());
+    for patch in shape.patches() {
+        let counts = counts.patch(patch.first_node);
+        shape.offsets().iter().for_each(|&offset| counts[offset] += 1.0);
+    }
+    let supports = |node: usize| -> f64 {
+        let number = grid.node_at(node);
+        let along = |axis: usize| {
+            let knots = &grid.axes()[axis];
+            let cells = number[axis].saturating_sub(grid.order())..=number[axis];
+            cells.filter(|&cell| cell < knots.cells() && knots.has_length(cell)).count() as f64
+        };
+        (0..D).map(along).product()
+    };
+    let counts = halo.sum(&counts);
+    let is_full: Vec<bool> = counts.iter().enumerate().map(|(node, count)| *count >= supports(node)).collect();
+    let (width, order) = (shape.width(), grid.order());
+    let is_middle =
+        |k: usize| (0..D).all(|axis| (order / 2..=order.div_ceil(2)).contains(&(k / width.pow(axis as u32) % width)));
+    let middle: Vec<usize> = (0..shape.offsets().len()).filter(|&k| is_middle(k)).map(|k| shape.offsets()[k]).collect();
+    move |patch| middle.iter().all(|offset| is_full[patch.first_node + offset])
 }

@@ -1,10 +1,12 @@
 //! Consolidation by large strains, against a solution by lines (200 and 400 cells, extrapolated).
 
-use super::{DENSITY, M, Plane, column, geometric, run};
+use super::{DENSITY, M, Plane, WEIGHT, column, geometric, run};
 use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::kinematics::PlaneStrain;
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::water::flow::{Course, Given, PermeabilityLaw};
+use bsmpm::water::flow::{Course, DrainedFace, Given, PermeabilityLaw};
+use bsmpm::water::observed::PoreWater;
 
 /// N/m3  of water whose own weight does nothing to a column of the stiffness M
 const LIGHT: f64 = 1.0;
@@ -83,7 +85,7 @@ fn weight_of_half_the_stiffness_settles_as_the_solution_by_lines() {
     let water = scene.model.water.as_mut().expect("water");
     water.unit_weight = LIGHT;
     let flow = water.flow.as_mut().expect("it flows");
-    flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along *= LIGHT / super::WEIGHT;
+    flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along *= LIGHT / WEIGHT;
     flow.drains[0].given = Given::Head(Course(vec![(0.0, 1.0)]));
     let expected = [[0.02499, 0.36294], [0.04944, 0.29968], [0.09169, 0.2045], [0.15508, 0.04901], [0.17177, 0.00295]];
     let off = compare("weight", &consolidated(scene, (1e-4, 200)), &expected);
@@ -132,4 +134,52 @@ fn a_load_under_which_the_volume_follows_terzaghis_equation_settles_exactly_so()
     let off = compare("exact", &found, &expected);
     println!("off by {off:.4} of the last settlement");
     assert!(found.len() == T.len() && off < 0.02);
+}
+
+/// Steady flow upwards through a column that a load has pressed to .7 of its height, which the points of a cell no
+/// longer fill evenly: ln(l)/l = -(q - p)/M, p linear in space, H = 1/int ds/l(p(s)), w = k p_base/(gamma_w H).
+#[test]
+fn what_flows_through_a_compressed_column_is_what_leaves_by_its_drain() {
+    let (load, base) = (0.5, 0.1);
+    let stretch = |pressure: f64| {
+        let (mut low, mut high) = (0.4, 1.0_f64);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if middle.ln() / middle < pressure - load { low = middle } else { high = middle }
+        }
+        low
+    };
+    let parts = 1000;
+    let lengths = (0..parts).map(|k| 1.0 / stretch(base * (f64::from(k) + 0.5) / f64::from(parts)));
+    let height = f64::from(parts) / lengths.sum::<f64>();
+    let expected = WEIGHT / M * base * M / (WEIGHT * height);
+
+    let mut scene = settling(20, load * M, PermeabilityLaw::Constant);
+    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    let given = Given::Pressure(Course(vec![(0.0, base * M)]));
+    flow.faces.push(DrainedFace { axis: 1, upper: false, given, acts: true });
+    let (mut out, mut t) = (0.0, 0.0);
+    run(&mut scene, geometric(5e-3, 4.0, 120), |now, _, report| {
+        let crossed = &report.water.as_ref().expect("water flows").crossed;
+        (out, t) = (crossed.drains[0] / (now - t), now);
+    });
+    let width = 1.0 / (20.0 - 1.0 + 0.999);
+    let water = PoreWater::of(&scene.model, &scene.points, t).expect("water");
+    let fluxes = water.fluxes::<PlaneStrain>(&scene.model.grid, &scene.halo()).expect("all inside");
+    let settled = surface(&scene.points);
+    let off = |value: f64| value / expected - 1.0;
+    let (mut worst, mut count) = (0.0_f64, 0);
+    for (x, flux) in scene.points.x.iter().zip(&fluxes) {
+        // The cell of the surface has ground on one side only.
+        if x[1] < height - 1.5 * width {
+            (worst, count) = (worst.max(off(flux[1]).abs()), count + 1);
+        }
+    }
+    println!(
+        "height {:.4} ({height:.4}), drain {:.4}, {count} points at most {worst:.4}",
+        1.0 - settled,
+        off(out / width)
+    );
+    assert!((1.0 - settled - height).abs() < 2e-3 && count > 100);
+    assert!(off(out / width).abs() < 0.015 && worst < 0.02);
 }

@@ -1,8 +1,11 @@
 //! Where soils of unlike permeability meet, and what tight ones let through there.
 
-use crate::case::{Case, Flow};
+use crate::case::{Body, Case, Flow};
+use crate::region::Edge;
 use crate::report::Report;
 use crate::validate::lines;
+use crate::validate::place::beyond;
+use crate::validate::site::normal;
 use bsmpm::water::flow::Soil;
 use std::collections::BTreeMap;
 
@@ -10,6 +13,13 @@ use std::collections::BTreeMap;
 /// the grid's lines, let through 4, 11, 28 and 75 % too much with 2, 3, 5 and 10, and ten times as much with 100; of
 /// two cells 1, 4, 9, 22 and 80 %.
 const UNLIKE: f64 = 3.0;
+
+/// Cells across which functions of the pressure reach from one side to the other.
+const REACH: f64 = 2.0;
+/// Cells beside an edge at which what lies there is looked for.
+const BESIDE: f64 = 1e-3;
+/// Places between the two sides that are looked at in a cell.
+const LOOKS: usize = 10;
 
 /// Warns of soils that meet where the pressure cannot follow what their permeabilities ask for; in a plane.
 pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
@@ -32,6 +42,61 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let [a, b] = [a, b].map(|material| &case.materials[material].name);
         report.warn(format!("material.{a} and material.{b} {message}"));
     }
+    thin(case, flow, report);
+}
+
+/// Warns of walls and gaps between bodies in which water flows that are so thin that it goes through them.
+fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    let cell = case.grid.shortest();
+    let flows = |body: &Body| flow.soils[body.material].as_ref().is_some_and(|soil| soil.permeability.is_some());
+    let mut told: BTreeMap<Option<usize>, (f64, [f64; 2])> = BTreeMap::new();
+    for t in std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at)) {
+        let there: Vec<&Body> =
+            (0..case.bodies.len()).filter(|k| case.is_there(*k, t)).map(|k| &case.bodies[k]).collect();
+        let at = |place: [f64; 2]| there.iter().filter(move |body| body.region.contains(place));
+        let flows_at = |place: [f64; 2]| at(place).any(|body| flows(body));
+        for edge in there.iter().filter(|body| flows(body)).flat_map(|body| body.region.edges(&case.grid).0) {
+            let (start, across) = (places_along(case, &edge), normal(edge.a, edge.b));
+            for (start, side) in start.flat_map(|at| [(at, 1.0), (at, -1.0)]) {
+                let away = |far: f64| [0, 1].map(|axis| start[axis] + side * far * cell * across[axis]);
+                let beside = away(BESIDE);
+                if flows_at(beside) {
+                    continue;
+                }
+                let mut far = (1..(REACH * LOOKS as f64) as usize).map(|k| k as f64 / LOOKS as f64);
+                let met = far.find(|far| flows_at(away(*far))).filter(|far| beyond(&case.grid, away(*far)).is_none());
+                if let Some(far) = met {
+                    let wall = at(beside).next().map(|body| body.material);
+                    let least = told.entry(wall).or_insert((far, start));
+                    if far < least.0 {
+                        *least = (far, start);
+                    }
+                }
+            }
+        }
+    }
+    for (wall, (far, at)) in told {
+        let what = match wall {
+            Some(material) => format!("material.{}: a wall of it", case.materials[material].name),
+            None => "body: a gap".into(),
+        };
+        report.warn(format!(
+            "{what} between bodies in which water flows, first at {at:.3?}, is about {far:.1} cells wide: the pressure's functions \
+             reach from one side to the other, and water goes through as if it were soil; less than {REACH} cells hold none \
+             back: make it wider, or the cells smaller"
+        ));
+    }
+}
+
+/// Places along an edge.
+fn places_along(case: &Case, edge: &Edge) -> impl Iterator<Item = [f64; 2]> + use<> {
+    let (lower, edge) = (case.grid.lower(), *edge);
+    (0..LOOKS).map(move |k| {
+        let part = (k as f64 + 0.5) / LOOKS as f64;
+        let x = edge.a[0] + part * (edge.b[0] - edge.a[0]);
+        let y = if edge.is_along(1) { edge.a[1] + part * (edge.b[1] - edge.a[1]) } else { edge.y(x) };
+        [lower[0] + x, lower[1] + y]
+    })
 }
 
 /// What two soils do to the water where they meet, if their permeabilities have this ratio.

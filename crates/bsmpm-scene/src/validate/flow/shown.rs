@@ -20,6 +20,9 @@ const FILM: f64 = 0.1;
 /// Growth per step above which steps are warned of: their own error is first order in them.
 const MOST_GROWTH: f64 = 1.25;
 
+/// Cells over the suction at which air enters from which on that is warned of.
+const NARROW: f64 = 50.0;
+
 /// Part of the softest soil's oedometric stiffness from which on a load is large, and the background that it asks for.
 const LARGE: f64 = 0.1;
 /// Young's moduli.
@@ -63,7 +66,25 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     weightless(case, flow, report);
     pressed(case, flow, report);
     super::leaks::check(case, flow, report);
+    super::crossing::check(case, flow, root, report);
+    narrow(case, flow, report);
     hanging(case, flow, report);
+}
+
+/// Retention by which pores empty within so small a part of a cell that iterations come to no end.
+fn narrow(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    let cell = case.grid.shortest();
+    for (named, soil) in case.materials.iter().zip(&flow.soils) {
+        let retention = soil.as_ref().and_then(|soil| soil.retention.as_ref());
+        let Some(entry) = retention.map(|of| of.curve.entry()).filter(|entry| NARROW * *entry < cell) else { continue };
+        report.warn(format!(
+            "material.{}.retention: air enters at a suction of {entry:e} m, {:.0} times less than a cell: pores are full or \
+             empty, and iterations follow that badly (a column that drained took 14 times as many at 1/50, and ended early at \
+             1/100 and below, its steps cut to 1/1024); a curve that begins at a tenth of a cell empties it as well",
+            named.name,
+            cell / entry
+        ));
+    }
 }
 
 /// Loads that take much of the height of the soil that they consolidate: its surface leaves the cells behind.
@@ -166,6 +187,7 @@ fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report
              along it drains it, from the start of the run on, or as the stage applies it"
         ));
     }
+    case.stages.get(number).into_iter().for_each(|stage| goes(case, (number, stage), report));
     if record.gives("add") && case.analysis.regime != Regime::QuasiStatic {
         record.error("add", not_shown("bodies that are placed while all moves are"), report);
     } else if let Some(stage) = case.stages.get(number) {
@@ -219,6 +241,25 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
 fn is_beside(case: &Case, at: &[f64; 3], wanted: impl Fn(usize) -> bool) -> bool {
     let mut bodies = case.bodies.iter().enumerate().filter(|(number, _)| wanted(*number));
     bodies.any(|(_, body)| place::is_at(std::slice::from_ref(body), &case.grid, *at))
+}
+
+/// Warns of drains whose ground goes with what a stage removes.
+fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) {
+    let before = case.just_before(stage.at);
+    for (drain, of) in case.flow.iter().flat_map(|flow| flow.drains.iter().enumerate()) {
+        let acts = [before, stage.at].into_iter().all(|t| case.acts_since(Acting::Drain(drain), t).is_some());
+        let is_gone = |at: &[f64; 3]| {
+            let beside = |t: f64| is_beside(case, at, |body| case.is_there(body, t));
+            beside(before) && !beside(stage.at)
+        };
+        if acts && matches!(of.site, DrainSite::Lines(_) | DrainSite::Plate(_)) && places(of, case).iter().all(is_gone)
+        {
+            report.warn(format!(
+                "stage.{number}.remove: drain.{drain} is on the surface of what is removed, and goes with it; what it leaves \
+                 drains by another [[drain]] along it, which the stage applies"
+            ));
+        }
+    }
 }
 
 /// Whether a drain lies between what a stage removes and what stays.

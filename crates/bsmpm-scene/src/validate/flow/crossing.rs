@@ -1,0 +1,176 @@
+//! What crosses a surface: two that say different things of one part of it, and more than the ground takes.
+
+use crate::case::{Acting, Case, DrainSite, Face, Flow, LoadedLine, Plate, Site};
+use crate::record::Record;
+use crate::report::Report;
+use crate::validate::side::side;
+use crate::validate::site::normal_of;
+use crate::validate::{place, site};
+use bsmpm::water::flow::{Given, Soil};
+
+/// Parts of a cell by which surfaces may be apart and still be one, and by which they overlap at least to be told.
+const APART: f64 = 0.05;
+const OVERLAP: f64 = 0.25;
+
+/// A surface that water crosses, with what is given there: a pressure, or else a rate.
+struct Crossing<'a> {
+    record: &'a Record,
+    called: String,
+    what: Acting,
+    parts: Vec<Part>,
+    given: Option<&'a Given>,
+}
+
+/// A piece of a surface.
+#[derive(Clone, Copy)]
+enum Part {
+    Line([[f64; 2]; 2]),
+    Circle([f64; 2], f64),
+    Plate(Plate),
+}
+
+/// Refuses surfaces that contradict each other, and warns of inflows that the ground cannot take.
+pub(super) fn check(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
+    let crossings = all(case, flow, root);
+    for (number, one) in crossings.iter().enumerate() {
+        for other in &crossings[..number] {
+            if let Some(told) = contradiction(one, other).filter(|_| meet(case, one, other)) {
+                report.error(one.record.origin, &one.record.path, told);
+            }
+        }
+    }
+    lifted(case, flow, report);
+}
+
+fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<Crossing<'a>> {
+    let drains = flow.drains.iter().zip(root.records("drain")).enumerate();
+    let drains = drains.map(|(number, (drain, record))| Crossing {
+        record,
+        called: drain.name.clone().unwrap_or_else(|| format!("drain.{number}")),
+        what: Acting::Drain(number),
+        parts: parts(&drain.site, case),
+        given: Some(&drain.given),
+    });
+    let inflows = flow.inflows.iter().zip(root.records("inflow")).enumerate();
+    let inflows = inflows.map(|(number, (inflow, record))| Crossing {
+        record,
+        called: format!("inflow.{number}"),
+        what: Acting::Inflow(number),
+        parts: match inflow.site {
+            Site::Segment { from, to } => vec![Part::Line([from, to])],
+            Site::Plate(plate) => vec![Part::Plate(plate)],
+            Site::Face(_) => Vec::new(),
+        },
+        given: None,
+    });
+    drains.chain(inflows).collect()
+}
+
+fn parts(site: &DrainSite, case: &Case) -> Vec<Part> {
+    match site {
+        DrainSite::Lines(lines) => lines.iter().map(|line| Part::Line(*line)).collect(),
+        DrainSite::Circle { center, radius } => vec![Part::Circle(*center, *radius)],
+        DrainSite::Plate(plate) => vec![Part::Plate(*plate)],
+        DrainSite::Face(Face { axis, upper }) => {
+            let [lower, upper] = [case.grid.lower(), case.grid.upper()].map(|mut corner| {
+                corner[*axis] = if *upper { case.grid.upper() } else { case.grid.lower() }[*axis];
+                corner
+            });
+            match case.grid.dims() {
+                2 => vec![Part::Line([lower, upper].map(|[x, y, _]| [x, y]))],
+                _ => vec![Part::Plate(Plate { lower, upper, round: false })],
+            }
+        }
+    }
+}
+
+/// What two that lie on one part of a surface say against each other. Rates add up; what a seepage face lets out may
+/// have rained on it.
+fn contradiction(one: &Crossing<'_>, other: &Crossing<'_>) -> Option<String> {
+    let name = &other.called;
+    match (one.given, other.given) {
+        (Some(a), Some(b)) if a != b => Some(format!(
+            "on a part of its surface {name} acts at the same time, and gives another pressure there: the ground would have \
+             one between them, or that of the later face; name parts that do not overlap, or let a stage release one"
+        )),
+        (None, Some(given)) if *given != Given::Seepage => Some(format!(
+            "on a part of its surface {name} acts at the same time, where the pressure is given: what is put in leaves there \
+             at once; name parts that do not overlap, let a stage release one, or give the drain seepage = true"
+        )),
+        _ => None,
+    }
+}
+
+/// Whether two overlap while both act.
+fn meet(case: &Case, one: &Crossing<'_>, other: &Crossing<'_>) -> bool {
+    let mut times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
+    let cell = case.grid.shortest();
+    times.any(|t| [one.what, other.what].into_iter().all(|what| case.acts_since(what, t).is_some()))
+        && one.parts.iter().any(|a| other.parts.iter().any(|b| overlap(case, *a, *b, cell)))
+}
+
+fn overlap(case: &Case, a: Part, b: Part, cell: f64) -> bool {
+    match (a, b) {
+        (Part::Line(a), Part::Line(b)) => shared(a, b, APART * cell) > OVERLAP * cell,
+        (Part::Circle(a, r), Part::Circle(b, s)) => (a[0] - b[0]).hypot(a[1] - b[1]).max((r - s).abs()) < APART * cell,
+        (Part::Plate(a), Part::Plate(b)) => {
+            let axis = a.normal();
+            let is_one = axis == b.normal() && (a.lower[axis] - b.lower[axis]).abs() < APART * cell;
+            let covers = |b: Plate, at: [f64; 3]| {
+                let within = |k: usize| k == axis || (b.lower[k] < at[k] && at[k] < b.upper[k]);
+                (0..3).all(within) && b.covers(at)
+            };
+            let places = |plate: Plate| site::places(Site::Plate(plate), &case.grid).into_iter();
+            is_one && (places(a).any(|at| covers(b, at)) || places(b).any(|at| covers(a, at)))
+        }
+        _ => false,
+    }
+}
+
+/// m  of one line that lie on another, to so much aside
+fn shared(a: [[f64; 2]; 2], b: [[f64; 2]; 2], aside: f64) -> f64 {
+    let along = [a[1][0] - a[0][0], a[1][1] - a[0][1]];
+    let length = along[0].hypot(along[1]);
+    let [e, n] = [[along[0] / length, along[1] / length], [-along[1] / length, along[0] / length]];
+    let from = |at: [f64; 2], axis: [f64; 2]| (at[0] - a[0][0]) * axis[0] + (at[1] - a[0][1]) * axis[1];
+    if b.iter().any(|end| from(*end, n).abs() > aside) {
+        return 0.0;
+    }
+    let [p, q] = b.map(|end| from(end, e).clamp(0.0, length));
+    (p - q).abs()
+}
+
+/// Warns of more rain than the ground lets through where nothing runs off.
+fn lifted(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    for (number, inflow) in flow.inflows.iter().enumerate().filter(|(_, inflow)| !inflow.runs_off) {
+        let line = match inflow.site {
+            Site::Segment { from, to } => LoadedLine::Segment { from, to },
+            Site::Plate(plate) => LoadedLine::Plate(plate),
+            Site::Face(_) => continue,
+        };
+        if side(&line, &case.grid, case.bodies.iter()).is_none() {
+            continue; // a well inside the ground
+        }
+        let normal = normal_of(inflow.site);
+        let across = |soil: &Soil<3>| {
+            soil.permeability.as_ref().map(|k| (0..3).map(|axis| normal[axis].powi(2) * k.along[axis]).sum::<f64>())
+        };
+        let places = site::places(inflow.site, &case.grid);
+        let is_there = |body: &crate::case::Body| {
+            places.iter().any(|at| place::is_at(std::slice::from_ref(body), &case.grid, *at))
+        };
+        let under = case.bodies.iter().filter(|body| is_there(body));
+        let least = under
+            .filter_map(|body| Some((across(flow.soils[body.material].as_ref()?)?, body.material)))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let rate = inflow.rate.0.iter().map(|row| row.1).fold(0.0, f64::max);
+        if let Some((least, material)) = least.filter(|(least, _)| rate > *least) {
+            report.warn(format!(
+                "inflow.{number}: {rate:e} m/s are more than material.{} lets through by its weight alone, {least:e} m/s: the \
+                 pressure rises at the surface until all of it goes in, and may lift the ground; give runs_off = true, as of \
+                 rain, or a lower rate",
+                case.materials[material].name
+            ));
+        }
+    }
+}
