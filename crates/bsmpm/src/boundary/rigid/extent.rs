@@ -39,9 +39,9 @@ impl<const D: usize> RigidContacts<D> {
 
     /// Part of what every point of this rank reaches that it has from the end of the step on, with the bodies'
     /// `states` and the points as they are then: what is near one goes on as far from it as the step has left it,
-    /// whatever its F has become.
+    /// whatever its F has become. None without bodies: on all ranks or on none.
     pub fn extents_after(&self, held: &[Held], states: &[RigidState], after: &Reaching<'_, D>) -> Option<Vec<f64>> {
-        if held.is_empty() {
+        if self.is_empty() {
             return None;
         }
         let mut extents = after.points.extent.clone().unwrap_or_else(|| vec![1.0; after.points.len()]);
