@@ -157,8 +157,8 @@ columns! {
         gap: Vec<f64>, "-", None, || 0.0;
         /// m  displacement when displacements were last set to zero, from that stage on; before that it is 0
         datum: Vec<Vector<D>>, "m", None, || Vector::zeros();
-        /// -  part of what a point reaches to a side that rigid bodies leave it at the start, if there are bodies, from
-        ///   the first step on; before that, and of points that come later, it is 1
+        /// -  part of what its F makes a point reach to a side that it has beside rigid bodies, if there are any: at
+        ///   the start as far as they leave it, then as the steps have left it; of points that come later it is 1
         extent: Vec<f64>, "-", None, || 1.0;
         /// N  force of a rigid body along its outline, where bodies rub, from the first step on; before that it is 0
         grip: Vec<Vector<D>>, "N", None, || Vector::zeros();

@@ -3,13 +3,15 @@
 #![doc = include_str!("rigid.md")]
 
 mod body;
+mod extent;
 mod near;
 mod outline;
 mod point;
 mod terrain;
 
 pub use body::{MOTIONS, RigidBody, RigidState};
-pub use near::{Reaching, Surroundings, extents};
+pub use extent::extents;
+pub use near::{Reaching, Surroundings};
 pub use outline::{Nearest, Outline, Sizes};
 pub use point::{Along, Grip};
 pub use terrain::Terrain;
