@@ -226,7 +226,6 @@ impl Resumed<'_> {
         let same = sizes(&points.surface.traction) == sizes(&surface.traction)
             && sizes(&points.surface.position) == sizes(&surface.position)
             && sizes(&points.surface.pressure) == sizes(&surface.pressure)
-            && sizes(&points.surface.pressure_rate) == sizes(&surface.pressure_rate)
             && points.surface.bodies.len() == surface.bodies.len()
             && model.boundary.fits(&model.grid, &points.surface.held);
         let anchors = &points.surface.anchors;

@@ -8,7 +8,7 @@ use crate::signals::Requests;
 use crate::slab::Slabs;
 use crate::timers::Timers;
 use crate::traffic::{TrafficCounts, TrafficKind};
-use bsmpm::boundary::{Idle, Surface};
+use bsmpm::boundary::{Idle, Surface, follower};
 use bsmpm::control::{Accepted, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::grid::Grid;
@@ -253,12 +253,12 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let (boundary, anchored) = (&self.model.boundary, self.points.anchored());
         let anchors = self.points.surface.anchors.renewed(&self.model.surfaces(), idle, anchored, &*self.halo);
         let places = anchors.places(boundary, anchored, &*self.halo);
+        let mut pressure = follower::now::<K, D>(&boundary.loads, (&self.model.grid, &anchors), anchored, &*self.halo);
         let surface = &mut self.points.surface;
         surface.anchors = anchors;
         for load in (0..idle.loads.len()).filter(|&load| idle.loads[load]) {
             surface.position[load].clone_from(&places.loads[load]);
-            surface.pressure[load].clone_from(&places.pressure[load]);
-            surface.pressure_rate[load].fill(Vector::zeros());
+            surface.pressure[load] = std::mem::take(&mut pressure[load]);
         }
     }
 

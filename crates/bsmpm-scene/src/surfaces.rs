@@ -92,7 +92,7 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
     let forces = case.point_loads.iter().map(|load| Load {
         amplitude: load.amplitude.clone(),
         ..Load::dead(
-            vec![SurfacePoint { x: placed(load.at), area: 1.0 / case.geometry.whole() }],
+            vec![SurfacePoint::at(placed(load.at), 1.0 / case.geometry.whole())],
             vector(load.force),
             load.ramp,
         )
@@ -147,10 +147,13 @@ fn around<K: Kinematics<D>, const D: usize>(
     // In fours, so that a circle has the grid's symmetries.
     let pieces = 4 * (length / grid.smallest_edge() * count as f64 / 4.0).ceil() as usize;
     let point = |k: usize| {
-        let (sin, cos) = ((k as f64 + 0.5) * std::f64::consts::TAU / pieces as f64).sin_cos();
-        let outward = vector([cos, sin]);
-        let x = center + outward * radius;
-        (SurfacePoint { x, area: length / pieces as f64 * K::weight(&x) }, -outward)
+        let outward = |part: f64| {
+            let (sin, cos) = ((k as f64 + part) * std::f64::consts::TAU / pieces as f64).sin_cos();
+            vector([cos, sin])
+        };
+        let place = |part: f64| center + outward(part) * radius;
+        let (x, ends) = (place(0.5), [0.0, 1.0].map(place));
+        (SurfacePoint { x, area: length / pieces as f64 * K::weight(&x), ends }, -outward(0.5))
     };
     (0..pieces).map(point).filter(|(point, _)| grid.locate(&point.x).is_some()).collect()
 }

@@ -5,6 +5,7 @@ pub mod absorbing;
 pub mod anchor;
 pub mod contact;
 pub mod coulomb;
+pub mod follower;
 pub mod load;
 pub mod rigid;
 pub mod strip;
@@ -101,7 +102,6 @@ impl<const D: usize> Boundary<D> {
             traction: self.strips.iter().map(at_rest).collect(),
             position: self.loads.iter().map(|load| load.points.iter().map(|point| point.x).collect()).collect(),
             pressure: self.loads.iter().map(Load::at_rest).collect(),
-            pressure_rate: self.loads.iter().map(|load| vec![Vector::zeros(); load.at_rest().len()]).collect(),
             anchors: Anchors::default(),
             held: Vec::new(),
             bodies: self.rigid.iter().map(RigidBody::at_rest).collect(),

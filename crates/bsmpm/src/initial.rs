@@ -247,7 +247,7 @@ fn elastic_residual<K: Kinematics<D>, const D: usize>(
         let tau = stress_of(&elastic_at(problem.model, problem.points, p), &strains[p]);
         K::flux(&tau, &Tensor::identity()) * volume[p]
     });
-    Balance::of(problem, u, &problem.halo.sum(&f_int), 0)
+    Balance::of(problem, (u, &|_| Tensor::identity()), &problem.halo.sum(&f_int), 0)
 }
 
 fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, p: usize) -> Elastic {

@@ -69,7 +69,13 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let mut report = StepReport { dt, strips, rigid, ..StepReport::of(&problem, &found) };
     let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
-    let mut surface = Surface { traction, position, anchors, bodies, ..points.surface.clone() };
+    let pressure = nodes.followers.tractions::<K>(
+        (&model.boundary.loads, &model.grid),
+        points,
+        (&found.u, &|p| found.trial.dF(p)),
+        halo,
+    );
+    let mut surface = Surface { traction, position, pressure, anchors, bodies, ..points.surface.clone() };
     let (answers, state) = commit::answers(model, &found.trial, points, halo)?;
     let accounts = model.balances_energy || model.regime == Regime::Dynamic;
     let draft = accounts.then(|| Draft::of(&problem, (&found, &answers), (t, dt)));
@@ -92,7 +98,6 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         report.strips[number].left_behind = places.left_behind(number, strip, t + dt, &model.grid);
     }
     surface.position = places.loads;
-    surface.follow(places.pressure, dt);
     free_field.settle(&mut surface.held);
     if let Some(water) = &mut report.water {
         water.stored = content;

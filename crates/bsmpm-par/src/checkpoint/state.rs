@@ -48,7 +48,8 @@ pub struct CheckpointState {
     pub traction: Vec<Vec<Row>>,
     /// m  position of every load's points.
     pub position: Vec<Vec<Row>>,
-    /// Pa  traction of loads that follow the surface, and its rate, Pa per s; none of a run by a version that had none.
+    /// Pa  traction of loads that follow the surface; none of a run by a version that had none. Behind it what older
+    /// versions had, its rate.
     #[serde(default, skip_serializing_if = "follow_nothing")]
     pub pressure: [Vec<Vec<Row>>; 2],
     /// Ids of the points that the points of strips, and those of loads, are anchored to; none of a run by a version
@@ -232,12 +233,10 @@ impl CheckpointState {
         let of_loads = |lists: &[Vec<Row>]| {
             if lists.is_empty() { Some(vec![Vec::new(); self.position.len()]) } else { vectors(lists) }
         };
-        let [pressure, pressure_rate] = self.pressure.each_ref().map(|lists| of_loads(lists));
         Some(Surface {
             traction: vectors(&self.traction)?,
             position: vectors(&self.position)?,
-            pressure: pressure?,
-            pressure_rate: pressure_rate?,
+            pressure: of_loads(&self.pressure[0])?,
             anchors,
             held: vectors(&self.held)?,
             bodies: self.rigid.iter().map(rigid_state).collect(),

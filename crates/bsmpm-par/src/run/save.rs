@@ -157,8 +157,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             held: rows(&surface.held),
             free_field: simulation.points.free_field.iter().map(FreeFieldState::of).collect(),
             rigid: surface.bodies.iter().map(rigid_numbers).collect(),
-            pressure: [&surface.pressure, &surface.pressure_rate]
-                .map(|lists| if lists.iter().all(Vec::is_empty) { Vec::new() } else { rows(lists) }),
+            pressure: [
+                if surface.pressure.iter().all(Vec::is_empty) { Vec::new() } else { rows(&surface.pressure) },
+                Vec::new(),
+            ],
             record: self.recorder.state(),
             told_strips: self.told_strips.clone(),
             told_rigid: self.told_rigid.clone(),

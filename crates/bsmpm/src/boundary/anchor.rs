@@ -4,9 +4,9 @@
 //! Points that moved with the nodes instead would lag behind where rows of cells empty: on a column compressed by 30 %
 //! a load would come to lie .013 m of .70 m below the surface. And it tells where a strip has let go of its material.
 
+use super::Boundary;
 use super::strip::{Strip, reduce};
 use super::surface::{Anchors, SurfacePoint};
-use super::{Boundary, Load};
 use crate::grid::Grid;
 use crate::parallel::Halo;
 use crate::points::Packed;
@@ -69,8 +69,6 @@ pub struct AnchorPlaces<const D: usize> {
     pub strips: Vec<Vec<Vector<D>>>,
     /// per load and point of it: on the material
     pub loads: Vec<Vec<Vector<D>>>,
-    /// Pa  per load that follows the surface and point of it: its traction, per area of the start
-    pub pressure: Vec<Vec<Vector<D>>>,
 }
 
 impl Anchors {
@@ -153,32 +151,19 @@ impl Anchors {
     ) -> AnchorPlaces<D> {
         let starts = starts(boundary);
         let of_strips: usize = self.strips.iter().map(Vec::len).sum();
-        let pressed = pressures(boundary);
         let mut found = vec![vec![Vector::zeros(); starts.len()]];
-        found.extend(pressed.as_ref().map(|pressed| vec![Vector::zeros(); pressed.len()]));
         if !starts.is_empty() {
             points.visit(self.strips.iter().chain(&self.loads).flatten(), |p, at| {
-                let F = points.F.at(p);
-                let now = if at < of_strips { points.ahead(p, &starts[at]) } else { points.along(p, &starts[at]) };
-                found[0][at] = now;
-                if let (Some(pressed), Some(k)) = (&pressed, at.checked_sub(of_strips)) {
-                    found[1][k] = turned(&F, &pressed[k]);
-                }
+                found[0][at] = if at < of_strips { points.ahead(p, &starts[at]) } else { points.along(p, &starts[at]) };
             });
             reduce(&mut found, halo);
         }
         let mut found = found.into_iter().flatten();
-        let mut take = |ids: &Vec<u64>| found.by_ref().take(ids.len()).collect::<Vec<_>>();
-        let (strips, loads) =
-            (self.strips.iter().map(&mut take).collect(), self.loads.iter().map(&mut take).collect::<Vec<_>>());
-        let mut pressure: Vec<Vec<Vector<D>>> = boundary.loads.iter().map(|_| Vec::new()).collect();
-        if pressed.is_some() {
-            for (load, (ids, pressure)) in boundary.loads.iter().zip(self.loads.iter().zip(&mut pressure)) {
-                let taken = take(ids);
-                *pressure = if load.follows { taken } else { Vec::new() };
-            }
+        let mut take = |ids: &Vec<u64>| found.by_ref().take(ids.len()).collect();
+        AnchorPlaces {
+            strips: self.strips.iter().map(&mut take).collect(),
+            loads: self.loads.iter().map(&mut take).collect(),
         }
-        AnchorPlaces { strips, loads, pressure }
     }
 }
 
@@ -199,16 +184,6 @@ impl<const D: usize> AnchorPlaces<D> {
         };
         strip.points.iter().zip(self.strips.get(number).map_or(&[][..], Vec::as_slice)).filter(lags).count()
     }
-}
-
-/// Tractions at the start of all loads' points, Pa, those that follow the surface; `None` where none does.
-fn pressures<const D: usize>(boundary: &Boundary<D>) -> Option<Vec<Vector<D>>> {
-    boundary.loads.iter().any(|load| load.follows).then(|| {
-        let of = |load: &Load<D>| {
-            if load.follows { load.traction.clone() } else { vec![Vector::zeros(); load.points.len()] }
-        };
-        boundary.loads.iter().flat_map(of).collect()
-    })
 }
 
 impl<const D: usize> Anchored<'_, D> {

@@ -1,13 +1,12 @@
 //! Tractions and point loads: forces on points of the body's surface that move with the body.
 //!
-//! A dead load keeps force and direction. A pressure turns and stretches with the surface, by Nanson's formula
-//! `n da = cof(F) N dA`, F that of the material that its points are anchored to: in a step that of its start, which
-//! goes on as it did in the step before. Without the latter it would lag behind by a step, and drive whatever turns: a
-//! block that spins under the pressure of water all around turns 4.3 times as fast after a quarter of a turn in 157
-//! steps.
+//! A dead load keeps force and direction. A pressure turns and stretches with the surface (see
+//! [`follower`](super::follower)).
 
+use super::anchor::{Anchored, Surfaces};
+use super::follower::FollowerLoads;
 use super::strip::reduce;
-use super::surface::{Attachment, Surface, SurfacePoint};
+use super::surface::{Anchors, Attachment, Surface, SurfacePoint};
 use crate::error::StepError;
 use crate::grid::{Contributions, Grid};
 use crate::parallel::Halo;
@@ -41,16 +40,6 @@ impl<const D: usize> Load<D> {
         if self.follows { self.traction.clone() } else { Vec::new() }
     }
 
-    /// Its traction per area of the start when fully applied, Pa, of point `k`, a time `dt` after the state of a
-    /// surface, in which it is load `number`.
-    fn acting(&self, surface: &Surface<D>, (number, k): (usize, usize), dt: f64) -> Vector<D> {
-        if self.follows {
-            surface.pressure[number][k] + surface.pressure_rate[number][k] * dt
-        } else {
-            self.traction[k]
-        }
-    }
-
     /// Whether nothing of it ever acts: there may be no material at it yet, or any more.
     pub fn is_idle(&self) -> bool {
         !self.amplitude.is_empty() && self.amplitude.iter().all(|row| row.1 == 0.0)
@@ -66,31 +55,32 @@ impl<const D: usize> Load<D> {
     }
 }
 
-/// Nodal forces of all loads at time `t`, `dt` after the state of the surface, N, added to `f_ext`. Fails on all ranks
-/// if a load has lost its material.
+/// Nodal forces of all loads at time `t`, N, added to `f_ext`; those that follow the surface, which is one of these
+/// `surfaces`, are returned instead. Fails on all ranks if a load has lost its material.
 pub fn add_forces<const D: usize>(
-    loads: &[Load<D>],
-    surface: &Surface<D>,
+    (surfaces, surface): (&Surfaces<'_, D>, &Surface<D>),
+    points: Anchored<'_, D>,
     (grid, active): (&Grid<D>, &[bool]),
-    (t, dt): (f64, f64),
+    t: f64,
     halo: &dyn Halo,
     f_ext: &mut [f64],
-) -> Result<(), StepError> {
+) -> Result<FollowerLoads<D>, StepError> {
+    let loads = &surfaces.boundary.loads[..];
     if loads.is_empty() {
-        return Ok(());
+        return Ok(FollowerLoads::default());
     }
-    let (offsets, mut applied) = (grid.offsets(), vec![0.0; loads.len()]);
+    let (offsets, mut applied, mut pushed) = (grid.offsets(), vec![0.0; loads.len()], Vec::new());
     let mut force = Contributions::none(grid, D, Vec::new());
     for (number, load) in loads.iter().enumerate() {
         let grown = load.grown(t);
         for (k, (point, x)) in load.points.iter().zip(&surface.position[number]).enumerate() {
             if let Some(attachment) = Attachment::at(grid, &offsets, |node| active[node], x) {
-                attachment.scatter(
-                    &offsets,
-                    &(load.acting(surface, (number, k), dt) * (grown * point.area)),
-                    &mut force,
-                );
                 applied[number] += 1.0;
+                if load.follows {
+                    pushed.push((number, k, grown * point.area, attachment));
+                } else {
+                    attachment.scatter(&offsets, &(load.traction[k] * (grown * point.area)), &mut force);
+                }
             }
         }
     }
@@ -102,7 +92,11 @@ pub fn add_forces<const D: usize>(
         return Err(StepError::Unloaded { load, points });
     }
     f_ext.iter_mut().zip(halo.sum(&force)).for_each(|(sum, force)| *sum += force);
-    Ok(())
+    if !loads.iter().any(|load| load.follows) {
+        return Ok(FollowerLoads::default());
+    }
+    let anchors = Anchors::of(surfaces, &surface.anchors, points, halo);
+    Ok(FollowerLoads::of(loads, pushed, (grid, &anchors), points))
 }
 
 /// Positions that all loads' points would have after the converged displacement `u`, m, moved by the nodes that their
@@ -137,12 +131,18 @@ pub fn work<const D: usize>(
 ) -> (f64, f64) {
     let mut sums = (0.0, 0.0);
     for (number, load) in loads.iter().enumerate() {
-        let moved = before.position[number].iter().zip(&after.position[number]).map(|(from, to)| to - from);
-        let work =
-            |(k, moved): (usize, Vector<D>)| load.points[k].area * load.acting(before, (number, k), dt).dot(&moved);
-        let full: f64 = moved.enumerate().map(work).sum();
-        sums.0 += 0.5 * (load.grown(t) + load.grown(t + dt)) * full;
-        sums.1 += 0.5 * (load.grown(t + dt) - load.grown(t)) * full;
+        let acting = |surface: &Surface<D>| match load.follows {
+            true => surface.pressure[number].clone(),
+            false => load.traction.clone(),
+        };
+        let full = |traction: &[Vector<D>]| {
+            let moved = before.position[number].iter().zip(&after.position[number]).map(|(from, to)| to - from);
+            let work = |(k, moved): (usize, Vector<D>)| load.points[k].area * traction[k].dot(&moved);
+            moved.enumerate().map(work).sum::<f64>()
+        };
+        let works = [(before, t), (after, t + dt)].map(|(surface, t)| load.grown(t) * full(&acting(surface)));
+        sums.0 += 0.5 * (works[0] + works[1]);
+        sums.1 += 0.5 * (works[1] - works[0]);
     }
     sums
 }

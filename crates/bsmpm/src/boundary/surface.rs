@@ -26,6 +26,29 @@ pub struct SurfacePoint<const D: usize> {
     pub x: Vector<D>,
     /// m^(D-1)  share of the area
     pub area: f64,
+    /// m  what it stands for: a segment from one end to the other, or a rectangle along the axes by its lower and upper
+    /// corner; both the point itself where nothing is told
+    pub ends: [Vector<D>; 2],
+}
+
+/// Corners of a piece of a surface: of a segment each end twice.
+pub const CORNERS: usize = 4;
+
+impl<const D: usize> SurfacePoint<D> {
+    /// A point of a surface whose extent is of no concern.
+    pub fn at(x: Vector<D>, area: f64) -> Self {
+        Self { x, area, ends: [x; 2] }
+    }
+
+    /// Corners of its piece in turn, m.
+    pub fn corners(&self) -> [Vector<D>; CORNERS] {
+        let [a, b] = self.ends;
+        let mut corners = [a, a, b, b];
+        if let Some(axis) = (0..D).find(|&axis| a[axis] != b[axis]).filter(|_| D == 3) {
+            (corners[1][axis], corners[3][axis]) = (b[axis], a[axis]);
+        }
+        corners
+    }
 }
 
 /// Points in the middles of `count` equal pieces of every part of a straight segment that the grid's lines cut off;
@@ -44,7 +67,8 @@ pub fn along<K: Kinematics<D>, const D: usize>(
         let middle = part[0] + (k as f64 + 0.5) * share;
         let off = middle - 0.5 * (part[0] + part[1]);
         let x = from + (to - from) * (middle + off * (spread::<K, D>((from, to), part, count) - 1.0));
-        SurfacePoint { x, area: share * length * K::weight(&x) }
+        let ends = [0.0, 1.0].map(|end| from + (to - from) * (part[0] + (k as f64 + end) * share));
+        SurfacePoint { x, area: share * length * K::weight(&x), ends }
     };
     cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
 }
@@ -67,8 +91,17 @@ pub fn over<K: Kinematics<D>, const D: usize>(
     upper: &Vector<D>,
     count: usize,
 ) -> Vec<SurfacePoint<D>> {
-    let weighed = |(point, _): (SurfacePoint<D>, _)| SurfacePoint { area: point.area * K::weight(&point.x), ..point };
+    let weighed = |(point, edges): (SurfacePoint<D>, Vector<D>)| SurfacePoint {
+        area: point.area * K::weight(&point.x),
+        ends: ends(&point.x, &edges),
+        ..point
+    };
     pieces(grid, lower, upper, count).into_iter().map(weighed).collect()
+}
+
+/// Lower and upper corner of a rectangle, m.
+fn ends<const D: usize>(middle: &Vector<D>, edges: &Vector<D>) -> [Vector<D>; 2] {
+    [-0.5, 0.5].map(|end| middle + edges * end)
 }
 
 /// The pieces of [`over`], and their edges, m.
@@ -78,7 +111,7 @@ fn pieces<const D: usize>(
     upper: &Vector<D>,
     count: usize,
 ) -> Vec<(SurfacePoint<D>, Vector<D>)> {
-    let mut pieces = vec![(SurfacePoint { x: *lower, area: 1.0 }, Vector::zeros())];
+    let mut pieces = vec![(SurfacePoint::at(*lower, 1.0), Vector::zeros())];
     for axis in (0..D).filter(|&axis| upper[axis] > lower[axis]) {
         let mut end = *lower;
         end[axis] = upper[axis];
@@ -87,7 +120,7 @@ fn pieces<const D: usize>(
             line.iter().map(move |&(at, length)| {
                 let (mut x, mut edges) = (point.x, edges);
                 (x[axis], edges[axis]) = (at, length);
-                (SurfacePoint { x, area: point.area * length }, edges)
+                (SurfacePoint::at(x, point.area * length), edges)
             })
         };
         pieces = pieces.into_iter().flat_map(across).collect();
@@ -131,7 +164,8 @@ pub fn within<K: Kinematics<D>, const D: usize>(
         let (area, moment) = (0.5 * (one.0 + other.0), 0.5 * (one.1 + other.1));
         let mut x = piece.x;
         (x[a], x[b]) = (moment[a] / area, moment[b] / area);
-        (area > 0.0).then(|| SurfacePoint { x, area: area * K::weight(&x) })
+        let ends = ends(&piece.x, &edges);
+        (area > 0.0).then(|| SurfacePoint { x, area: area * K::weight(&x), ends })
     };
     pieces(grid, lower, upper, count).into_iter().filter_map(clipped).collect()
 }
@@ -176,10 +210,8 @@ pub struct Surface<const D: usize> {
     /// m  position of every load's points, which move with the material that they are anchored to
     pub position: Vec<Vec<Vector<D>>>,
     /// Pa  of every load that follows the surface its traction when fully applied, per area of the start, turned and
-    /// stretched with the material; empty for the others
+    /// stretched with the material (see [`follower`](super::follower)); empty for the others
     pub pressure: Vec<Vec<Vector<D>>>,
-    /// Pa per s (pseudo-time)  how fast that changed in the last step
-    pub pressure_rate: Vec<Vec<Vector<D>>>,
     /// that material
     pub anchors: Anchors,
     /// N  of every node of every absorbing face (numbered on the face of the whole grid) what holds the state of the
@@ -189,17 +221,6 @@ pub struct Surface<const D: usize> {
     pub bodies: Vec<RigidState>,
     /// water that has gone through drains and inflows since the start
     pub crossed: Crossed,
-}
-
-impl<const D: usize> Surface<D> {
-    /// Goes on to these pressures after a step of the length `dt`.
-    pub(crate) fn follow(&mut self, pressure: Vec<Vec<Vector<D>>>, dt: f64) {
-        for (load, (rates, before)) in pressure.iter().zip(self.pressure_rate.iter_mut().zip(&self.pressure)) {
-            let of = |(now, before): (&Vector<D>, &Vector<D>)| (now - before) / dt;
-            *rates = load.iter().zip(before).map(of).collect();
-        }
-        self.pressure = pressure;
-    }
 }
 
 /// Ids of the points that the points of all surfaces are anchored to; the same on every rank, and empty before the

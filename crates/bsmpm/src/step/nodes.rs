@@ -3,6 +3,7 @@
 use crate::background::Blocks;
 use crate::boundary::absorbing::Dashpots;
 use crate::boundary::contact::Contacts;
+use crate::boundary::follower::FollowerLoads;
 use crate::boundary::load;
 use crate::boundary::rigid::{RigidContacts, Surroundings};
 use crate::error::StepError;
@@ -46,8 +47,10 @@ pub struct Nodes<const D: usize> {
     pub weight: Vec<f64>,
     /// present in dynamics; then `weight` is the mass
     pub inertia: Option<Inertia>,
-    /// N  external force at t + dt, D numbers a node
+    /// N  external force at t + dt, D numbers a node, but for loads that follow the surface
     pub f_ext: Vec<f64>,
+    /// those
+    pub followers: FollowerLoads<D>,
     /// m  prescribed displacement of the step per component; `None` where it is not prescribed
     pub prescribed: Vec<Option<f64>>,
     /// per component: an unknown of the linear system
@@ -141,7 +144,8 @@ impl<const D: usize> Nodes<D> {
             f_ext.iter_mut().zip(halo.sum(&force)).for_each(|(all, force)| *all += force);
         }
         let window = (&model.grid, &active[..]);
-        load::add_forces(&model.boundary.loads, &points.surface, window, (t + dt, dt), halo, &mut f_ext)?;
+        let surfaces = (&model.surfaces(), &points.surface);
+        let followers = load::add_forces(surfaces, points.anchored(), window, t + dt, halo, &mut f_ext)?;
         let rigid = match model.boundary.rigid.is_empty() {
             true => RigidContacts::default(),
             false => {
@@ -171,6 +175,7 @@ impl<const D: usize> Nodes<D> {
             rigid,
             dashpots,
             f_ext,
+            followers,
             prescribed,
             inertia,
             free,

@@ -11,7 +11,9 @@ use crate::points::Points;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
+use crate::tensor::Tensor;
 use crate::water::residual::WaterBalance;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicU64, AtomicUsize};
@@ -67,7 +69,7 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, u, &mut f_int);
         }
-        let balance = Balance { water, ..Balance::of(problem, u, &halo.sum(&f_int), inverted) };
+        let balance = Balance { water, ..Balance::of(problem, (u, &|p| trial.dF(p)), &halo.sum(&f_int), inverted) };
         Self { trial, balance, first_inverted }
     }
 }
@@ -157,13 +159,15 @@ impl<K: Kinematics<D>, const D: usize> Fluxes<'_, K, D> {
 }
 
 impl Balance {
-    /// Balance of an internal force that is summed over the ranks, with `inverted` points on this one.
+    /// Balance of an internal force that is summed over the ranks, with `inverted` points on this one, under the
+    /// displacement `u` that deforms points by `dF`.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        u: &[f64],
+        (u, dF): (&[f64], &dyn Fn(usize) -> Tensor),
         f_int: &[f64],
         inverted: u64,
     ) -> Self {
+        let f_ext = &*external_force(problem, (u, dF));
         let mut f_strips = Vec::new();
         if !problem.model.boundary.strips.is_empty() || !problem.nodes.rigid.is_empty() {
             let mut held = Contributions::none(&problem.model.grid, D, Vec::new());
@@ -171,14 +175,14 @@ impl Balance {
             problem.nodes.rigid.add_forces(u, &mut held, problem.halo);
             f_strips = problem.halo.sum(&held);
         }
-        let forces = Forces::of(problem, u, f_int, &f_strips);
+        let forces = Forces::of(problem, u, (f_ext, f_int, &f_strips));
         let soft = problem.nodes.background.is_some();
         let squares = |force: &[f64]| over_layers(problem.halo, D, |c| force[c].powi(2));
         let supporting = |c: usize| forces.reaction[c].powi(2) + f_strips.get(c).copied().unwrap_or(0.0).powi(2);
         let whole = [
             std::iter::once(inverted as f64).collect(),
             squares(&forces.f_oob),
-            over_active(problem, |c| problem.nodes.f_ext[c].powi(2)),
+            over_active(problem, |c| f_ext[c].powi(2)),
             over_active(problem, |c| f_int[c].powi(2)),
             over_layers(problem.halo, D, |c| forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))),
             over_active(problem, supporting),
@@ -188,7 +192,7 @@ impl Balance {
         // Out of balance, external, internal, inertial, of supports and strips.
         let terms = |c: usize| {
             let inertial = forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2));
-            [forces.f_oob[c].powi(2), problem.nodes.f_ext[c].powi(2), f_int[c].powi(2), inertial, supporting(c)]
+            [forces.f_oob[c].powi(2), f_ext[c].powi(2), f_int[c].powi(2), inertial, supporting(c)]
         };
         let apart = problem.nodes.apart.as_ref().map_or_else(Vec::new, |apart| apart.sums(problem.halo, D, terms));
         let sums = problem.halo.total(&[&whole[..], &apart].concat());
@@ -222,6 +226,21 @@ impl Balance {
     }
 }
 
+/// N  external force at the end of the step, that of the loads that follow the surface among it.
+fn external_force<'a, K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'a, K, D>,
+    moved: (&[f64], &dyn Fn(usize) -> Tensor),
+) -> Cow<'a, [f64]> {
+    let Problem { model, nodes, points, halo, .. } = *problem;
+    let mut f_ext = Cow::Borrowed(&nodes.f_ext[..]);
+    if !nodes.followers.is_empty() {
+        let traction = nodes.followers.tractions::<K>((&model.boundary.loads, &model.grid), points, moved, halo);
+        let force = nodes.followers.forces(&traction, &model.grid, halo);
+        f_ext.to_mut().iter_mut().zip(force).for_each(|(all, force)| *all += force);
+    }
+    f_ext
+}
+
 /// Sum over the components of this rank's own active nodes.
 fn over_active<K, const D: usize>(problem: &Problem<'_, K, D>, term: impl Fn(usize) -> f64) -> Exact {
     over_layers(problem.halo, D, |c| if problem.nodes.active[Nodal::<D>::node(c)] { term(c) } else { 0.0 })
@@ -238,8 +257,7 @@ impl Forces {
     fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         u: &[f64],
-        f_int: &[f64],
-        f_strips: &[f64],
+        (f_ext, f_int, f_strips): (&[f64], &[f64], &[f64]),
     ) -> Self {
         let nodes = problem.nodes;
         let mut forces = Self { f_oob: vec![0.0; u.len()], reaction: vec![0.0; u.len()], inertial: Vec::new() };
@@ -251,7 +269,7 @@ impl Forces {
         for component in (0..u.len()).filter(|&component| nodes.active[Nodal::<D>::node(component)]) {
             let inertial = forces.inertial.get(component).copied().unwrap_or(0.0);
             let held = f_strips.get(component).copied().unwrap_or(0.0);
-            let balance = nodes.f_ext[component] + held - f_int[component] - inertial;
+            let balance = f_ext[component] + held - f_int[component] - inertial;
             if nodes.free[component] {
                 forces.f_oob[component] = balance;
             } else if nodes.prescribed[component].is_some() {

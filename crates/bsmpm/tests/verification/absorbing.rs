@@ -152,7 +152,7 @@ fn a_base_that_absorbs_lets_the_motion_of_the_outcrop_in() {
 fn shot(cells: usize, absorbs: bool, places: &[[f64; 2]]) -> Vec<Vec<Vector<2>>> {
     let face = if absorbs { Support::absorbing } else { Support::fixed };
     let middle = Vector::repeat(0.5 * cells as f64);
-    let mut pulse = Load::dead(vec![SurfacePoint { x: middle, area: 1.0 }], [0.0, -1e3].into(), 0.0);
+    let mut pulse = Load::dead(vec![SurfacePoint::at(middle, 1.0)], [0.0, -1e3].into(), 0.0);
     pulse.amplitude = vec![(0.02, 0.3), (0.04, 1.0), (0.06, 0.3), (0.08, 0.0)];
     let mut scene =
         Scene::<PlaneStrain, 2>::new([0, 1].map(|_| axis(1.0, cells, 2)), hencky(YOUNG, POISSON), Regime::Dynamic)

@@ -2,10 +2,13 @@
 
 use super::sections::{DENSITY, G, cut};
 use crate::support::scene::{METHODS, Scene, axis, hencky, rms};
+use crate::support::solver::Skyline;
 use bsmpm::boundary::{Load, Support, surface};
+use bsmpm::control::Stepper;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::{Axisymmetric, Kinematics};
 use bsmpm::model::{Regime, Weighting};
+use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
 
 type Round = Scene<Axisymmetric, 2>;
@@ -79,6 +82,37 @@ fn a_thick_cylinder_under_pressure_converges_to_lame() {
         let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
         println!("{method:?}: {errors:?}, orders {orders:?}"); // measured 7.5e-5 at the finest, orders 1.97 to 1.99
         assert!(errors[2] <= 1e-4 && orders.iter().all(|&order| order >= 1.9), "{method:?}: {errors:?}");
+    }
+}
+
+/// A tube of the radii 1 and 2 whose pressure inside grows, in parts of Young's modulus: how far the outer points have
+/// moved at the end or in the last state that was found, with the pressure there.
+fn inflated(cells: usize, pressure: f64) -> (f64, f64) {
+    let h = 1.0 / cells as f64;
+    let mut scene = Round::new([axis(h, 3 * cells, 2), axis(h, 2, 2)], hencky(1.0, 0.3), Regime::QuasiStatic)
+        .body([cells..2 * cells, 0..2], 3, 0.0, |x| x * 0.0)
+        .rollers(1..2);
+    let points = surface::along::<Axisymmetric, 2>(&scene.model.grid, &[1.0, 0.0].into(), &[1.0, 2.0 * h].into(), 3);
+    scene = scene.load(Load { follows: true, ..Load::dead(points, [pressure, 0.0].into(), 1.0) });
+    let (schedule, halo) = (Schedule::new(0.1, 1.0, []), scene.halo());
+    let (mut solver, mut stepper) = (Skyline::new(&scene.model.grid), Stepper::new(scene.model.grid.nodes() * 2));
+    while let Some(Ok(_)) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
+        scene.points.sort_by_cell(&scene.model.grid);
+    }
+    let outer = scene.points.u.iter().zip(&scene.points.x).max_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+    (outer.expect("points").0[0], pressure * stepper.time())
+}
+
+/// Equilibrium of the same tube along the radius, integrated numerically with a tolerance of 1e-11: its outermost
+/// points are moved so far by .1 E, and it bears no more than .148913 E.
+#[test]
+fn a_tube_bears_its_limit_pressure_and_no_more() {
+    for (cells, exact) in [(4, 0.203_785), (8, 0.202_904)] {
+        let (moved, _) = inflated(cells, 0.1);
+        let (_, most) = inflated(cells, 0.15);
+        println!("{cells}: {:.1e} {:.1e}", moved / exact - 1.0, most / 0.148_913 - 1.0);
+        assert!((moved / exact - 1.0).abs() <= 2e-3, "{moved}");
+        assert!((most / 0.148_913 - 1.0).abs() <= 1e-3, "{most}");
     }
 }
 

@@ -72,7 +72,7 @@ fn oscillator(scheme: Scheme) -> Scene<PlaneStrain, 2> {
         1.0,
         |_| [SPEED, 0.0].into(),
     );
-    let points = (0..scene.points.len()).map(|p| SurfacePoint { x: scene.points.x[p], area: scene.points.volume[p] });
+    let points = (0..scene.points.len()).map(|p| SurfacePoint::at(scene.points.x[p], scene.points.volume[p]));
     let still = Path { rows: vec![(1e9, Vector::zeros())] };
     scene.model.newmark = scheme.newmark();
     scene.model.criteria.force = 1e-12;

@@ -75,7 +75,7 @@ fn forces_at_planes_of_symmetry_and_under_a_surcharge_are_those_of_the_load() {
         [(1, base.clone(), 10e3), (2, base.clone(), 10e3), (3, base, 10e3), (2, sides.into(), 0.0)]
     {
         let place = |k: i32| [(f64::from(k) + 0.5) / 16.0, 2.0].into();
-        let points: Vec<SurfacePoint<2>> = (0..32).map(|k| SurfacePoint { x: place(k), area: 1.0 / 16.0 }).collect();
+        let points: Vec<SurfacePoint<2>> = (0..32).map(|k| SurfacePoint::at(place(k), 1.0 / 16.0)).collect();
         let pressure = |at: &SurfacePoint<2>| Vector::<2>::new(0.0, -40e3 - slope * (at.x[0] - 1.0));
         let load = Load { traction: points.iter().map(pressure).collect(), ..Load::dead(points, Vector::zeros(), 1.0) };
         let grid = [12; 2].map(|cells| axis(h, cells, order));

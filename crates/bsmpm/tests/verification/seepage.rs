@@ -29,7 +29,7 @@ fn arc(radius: f64, fineness: usize) -> (Vec<SurfacePoint<2>>, Vec<Vector<2>>) {
     let angle = |k: usize| (k as f64 + 0.5) * FRAC_PI_2 / pieces as f64;
     let normals: Vec<Vector<2>> = (0..pieces).map(|k| at(angle(k).cos(), angle(k).sin())).collect();
     let area = radius * FRAC_PI_2 / pieces as f64;
-    (normals.iter().map(|normal| SurfacePoint { x: normal * radius, area }).collect(), normals)
+    (normals.iter().map(|normal| SurfacePoint::at(normal * radius, area)).collect(), normals)
 }
 
 /// Steady excess pressures of a scene whose skeleton stays, Pa, nodal, and what its drains and inflows did in 1 s.

@@ -83,7 +83,7 @@ fn arc(radius: f64, cell: f64) -> (Vec<SurfacePoint<2>>, Vec<Vector<2>>) {
     let angle = |k: usize| (k as f64 + 0.5) * FRAC_PI_2 / pieces;
     let normals: Vec<Vector<2>> = (0..pieces as usize).map(|k| at(angle(k).cos(), angle(k).sin())).collect();
     let area = radius * FRAC_PI_2 / pieces;
-    (normals.iter().map(|normal| SurfacePoint { x: normal * radius, area }).collect(), normals)
+    (normals.iter().map(|normal| SurfacePoint::at(normal * radius, area)).collect(), normals)
 }
 
 /// A quarter of a weightless body between two radii about the origin, which cut the cells, `cells` of them in 1 m; with

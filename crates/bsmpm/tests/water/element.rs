@@ -40,7 +40,7 @@ fn undrained_strength_follows_from_the_effective_stress() {
             .support(Support::roller(1, false));
         let mut plate = Support::roller(1, true);
         plate.velocity[1] = Some(-1e-3);
-        let side = LOAD_PARTS.iter().map(|y| SurfacePoint { x: at(1.0, *y), area: 1.0 / LOAD_PARTS.len() as f64 });
+        let side = LOAD_PARTS.iter().map(|y| SurfacePoint::at(at(1.0, *y), 1.0 / LOAD_PARTS.len() as f64));
         scene = scene.support(plate).load(Load::dead(side.collect(), at(-confining, 0.0), 0.0)).stabilised(method);
         let mut water = flowing(PermeabilityLaw::Constant);
         water.flow.as_mut().and_then(|flow| flow.soils[0].as_mut()).expect("a soil").permeability = None;

@@ -71,7 +71,7 @@ pub fn column(cells: usize, cut: f64, load: f64, law: PermeabilityLaw) -> Plane 
     let mut scene = Plane::new([axis(h, 1, 2), axis(h, rows, 2)], hencky(M, 0.0), Regime::QuasiStatic);
     scene = scene.body([0..1, 0..cells], 3, DENSITY, |x| x * 0.0).rollers([0]).support(Support::roller(1, false));
     let surface: Vec<SurfacePoint<2>> =
-        (0..3).map(|k| SurfacePoint { x: at(h * (k as f64 + 0.5) / 3.0, 1.0), area: h / 3.0 }).collect();
+        (0..3).map(|k| SurfacePoint::at(at(h * (k as f64 + 0.5) / 3.0, 1.0), h / 3.0)).collect();
     let mut water = flowing(law);
     let flow = water.flow.as_mut().expect("it flows");
     if is_cut {

@@ -49,7 +49,7 @@ fn wet<K: Kinematics<D>, const D: usize>(
     let side = |height: f64| {
         let mut x = Vector::<D>::from_element(0.7);
         (x[0], x[D - 1]) = (1.9, height);
-        vec![SurfacePoint { x, area: 0.5 }]
+        vec![SurfacePoint::at(x, 0.5)]
     };
     let normals = vec![Vector::<D>::from_fn(|k, _| f64::from(u8::from(k == 0)))];
     let permeability =
@@ -164,7 +164,7 @@ fn loaded(nonlinear: Nonlinear, method: Stabilisation, load: f64, law: Permeabil
     scene.model.water = Some(water);
     scene.model.nonlinear = nonlinear;
     scene.model.criteria = Criteria { energy: 1e-16, force: 1e-9, max_iterations: 400 };
-    let surface = (0..9).map(|k| SurfacePoint { x: at((f64::from(k) + 0.5) / 6.0, 2.0), area: 1.0 / 6.0 });
+    let surface = (0..9).map(|k| SurfacePoint::at(at((f64::from(k) + 0.5) / 6.0, 2.0), 1.0 / 6.0));
     scene.load(Load::dead(surface.collect(), at(0.0, -load), 1.0))
 }
 

@@ -42,7 +42,7 @@ fn flow(scene: &mut Plane) -> &mut Flow<2> {
 /// Three points a cell of the length h of an edge of so many cells, from a corner on along a direction.
 fn edge(corner: Vector<2>, along: Vector<2>, cells: usize, h: f64) -> Vec<SurfacePoint<2>> {
     let area = h / 3.0;
-    (0..3 * cells).map(|k| SurfacePoint { x: corner + along * ((k as f64 + 0.5) * area), area }).collect()
+    (0..3 * cells).map(|k| SurfacePoint::at(corner + along * ((k as f64 + 0.5) * area), area)).collect()
 }
 
 /// Kg of all points.
