@@ -145,6 +145,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     rigid::check(&case, record, report);
     stage::check(&mut case, record, report);
     load::sudden(&case, report);
+    strip::beside_fixed(&case, report);
     lines::place(&mut case, record, report);
     physics::check(&case, record, report);
     reduction::at_stage(&mut case, record, report);

@@ -2,14 +2,17 @@
 
 use super::place::{is_beyond, is_in, side_of_bodies};
 use super::site::{AroundStrip, corners, normal_of, places, site};
-use crate::case::{Base, Case, Face, Footing, MotionPath, Prescribed, Site};
+use crate::case::{Base, Case, Face, Footing, History, MotionPath, Prescribed, Quantity, Site};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{AnalysisType, Components};
+use crate::surfaces::{name_of_strip, strip_of_face};
+use crate::words::{AnalysisType, Components, Side, Support, Word};
 use bsmpm::boundary::StripContact;
 
 /// Parts of a motion below which it does not count.
 const NOTHING: f64 = 1e-12;
+/// Parts of a grid's length by which an end may lie off a face and be on it.
+const ON: f64 = 1e-9;
 
 /// The footing, if there is one and it is right.
 pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Footing> {
@@ -186,6 +189,47 @@ fn normal_part(path: &MotionPath, site: Site) -> f64 {
     let normal = normal_of(site);
     let along = |u: &[f64; 3]| u[0] * normal[0] + u[1] * normal[1] + u[2] * normal[2];
     path.rows.iter().map(|(_, u)| along(u).abs()).fold(0.0, f64::max)
+}
+
+/// Warns of forces of strips that meet a fixed face: its nodes at the edge hold a part of them.
+pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
+    let sites: Vec<Site> =
+        case.footing.iter().map(|of| of.site).chain(case.prescribed.iter().map(|of| of.site)).collect();
+    for (number, site) in sites.into_iter().enumerate() {
+        let Some(history) = case.histories.iter().find(|history| is_of_force(history, number, case)) else { continue };
+        if let Some(side) = met(case, site) {
+            report.warn(format!(
+                "history `{}`: {} meets {side}, which is fixed and holds at the edge a part of what it presses with, 4 % on a \
+                 wall of 16 cells, 8 % of 8, that is missing in its force; {side} = \"roller\" or {{ friction = ... }} holds \
+                 none of it, and a [[rigid]] body has all",
+                history.name,
+                name_of_strip(case, number)
+            ));
+        }
+    }
+}
+
+/// Whether the history tells of the force of that strip.
+fn is_of_force(history: &History, number: usize, case: &Case) -> bool {
+    match history.quantity {
+        Quantity::Strip { number: of, measured } => of == number && !measured.is_of_contact(),
+        Quantity::Reaction { face } => strip_of_face(case, face) == Some(number),
+        Quantity::FootingPressure | Quantity::FootingForce => case.footing.is_some() && number == 0,
+        _ => false,
+    }
+}
+
+/// The fixed face that what is held there meets, on which it does not lie.
+fn met(case: &Case, site: Site) -> Option<&'static str> {
+    let (corners, lower, upper) = (corners(site, &case.grid), case.grid.lower(), case.grid.upper());
+    Side::of(case.geometry).iter().enumerate().find_map(|(axis, sides)| {
+        let is_met = |upper_one: &bool| {
+            let at = if *upper_one { upper[axis] } else { lower[axis] };
+            let on = corners.map(|corner| (corner[axis] - at).abs() <= ON * (upper[axis] - lower[axis]));
+            case.boundary[axis][usize::from(*upper_one)] == Support::Fixed && on[0] != on[1]
+        };
+        [false, true].into_iter().find(is_met).map(|upper_one| sides[usize::from(upper_one)].word())
+    })
 }
 
 /// Whether the strip of that number (the footing, then prescribed motions) has moved before the time `t`.
