@@ -52,6 +52,8 @@ const SETBACK: f64 = 1.0;
 /// Cells by which points usually move in a step of dynamics, at most: the short collapse in steps of 10 ms, in which
 /// they move by one, ends 9 % off.
 const ADVANCE: f64 = 0.5;
+/// Part of the kinetic energy that points beside fixed faces usually have without moving so.
+const BESIDE: f64 = 0.1;
 /// Part of the internal forces' work that a background usually takes.
 const BACKGROUND: f64 = 0.02;
 
@@ -198,7 +200,12 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
         let meaning = "the farthest that a point moved in a step, in cells";
         ("step-advance", Indicator::new(advance / cell, "-", meaning, [0.0, ADVANCE]))
     });
-    [pull, setback, background, advance].into_iter().flatten()
+    let beside = summary.beside_fixed.zip(summary.kinetic).map(|(excess, all)| {
+        let meaning = "kinetic energy that points within a cell of a fixed face have beyond that of their motion, over that of all \
+                       points, mean over the steps";
+        ("wall-velocity", Indicator::new(share(excess, all), "-", meaning, [-BESIDE, BESIDE]))
+    });
+    [pull, setback, background, advance, beside].into_iter().flatten()
 }
 
 /// How far so many passes of smoothing have reached.

@@ -244,6 +244,10 @@ impl Ledger {
             summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft * self.whole);
             summary.internal_work = Some(summary.internal_work.unwrap_or(0.0) + all.abs() * self.whole);
         }
+        if let Some((excess, turnover)) = report.beside_fixed.zip(report.turnover.as_ref()) {
+            summary.beside_fixed = Some(summary.beside_fixed.unwrap_or(0.0) + excess * self.whole);
+            summary.kinetic = Some(summary.kinetic.unwrap_or(0.0) + turnover.stored.kinetic * self.whole);
+        }
         // Where statuses of contacts were corrected, histories go on from search to search: the last alone judges.
         if let Some(last) = report.judged.filter(|_| !report.settled) {
             let larger =

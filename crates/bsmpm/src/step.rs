@@ -83,7 +83,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         return Err(StepError::Interrupted);
     }
     // (10), (11)
-    let Committed { u, advance, smoothed, content } =
+    let Committed { u, advance, smoothed, content, beside_fixed } =
         commit::commit(model, (&shape, &nodes), (found, (answers, state)), points, halo);
     *guess = u;
     if let Some(extent) = nodes.rigid.extents_after(&held, &surface.bodies, &model.reaching(points)) {
@@ -107,5 +107,5 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     points.free_field = free_field.columns;
     let outflow = Outflow::of(model, (points, t + dt), halo);
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
-    Ok(StepReport { energy, turnover, advance, smoothed, outflow, ..report })
+    Ok(StepReport { energy, turnover, advance, smoothed, beside_fixed, outflow, ..report })
 }

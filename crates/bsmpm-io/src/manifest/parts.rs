@@ -150,6 +150,13 @@ pub struct Summary {
     /// without a background.
     #[serde(default)]
     pub internal_work: Option<f64>,
+    /// J  kinetic energy that points within a cell of a fixed face have beyond that of their motion, added over the
+    /// steps; none in statics, and without such a face.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beside_fixed: Option<f64>,
+    /// J  kinetic energy of all points, added over the same steps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kinetic: Option<f64>,
     /// Passes of smoothing of the elastic state, each counted by the mean share of the points that it had; none
     /// without.
     #[serde(default)]

@@ -71,6 +71,10 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
             "points move so far in a step that motion and contact are integrated coarsely: fronts of flows are off by 5 to 10 % where \
              it is a cell; a smaller [analysis] dt"
         }
+        "wall-velocity" => {
+            "points there keep velocities that the grid holds, and are not braked by the wall as they should be: layers of a cell \
+             slide too far; smaller cells, [analysis] mass = \"consistent\", or a face with { friction = ... }"
+        }
         "background-work" => {
             "about this part of the forces is carried by the soft background and not by the body: it is stiffer and stronger \
              than its material; a smaller [solver] background"

@@ -191,21 +191,27 @@ fn normal_part(path: &MotionPath, site: Site) -> f64 {
     path.rows.iter().map(|(_, u)| along(u).abs()).fold(0.0, f64::max)
 }
 
-/// Warns of forces of strips that meet a fixed face: its nodes at the edge hold a part of them.
+/// Warns of forces of strips that meet a face which holds, at the edge, a part of them: a fixed one, or a roller that
+/// an inclined one presses on.
 pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
     let sites: Vec<Site> =
         case.footing.iter().map(|of| of.site).chain(case.prescribed.iter().map(|of| of.site)).collect();
     for (number, site) in sites.into_iter().enumerate() {
         let Some(history) = case.histories.iter().find(|history| is_of_force(history, number, case)) else { continue };
-        if let Some(side) = met(case, site) {
-            report.warn(format!(
-                "history `{}`: {} meets {side}, which is fixed and holds at the edge a part of what it presses with, 4 % on a \
-                 wall of 16 cells, 8 % of 8, that is missing in its force; {side} = \"roller\" or {{ friction = ... }} holds \
-                 none of it, and a [[rigid]] body has all",
-                history.name,
-                name_of_strip(case, number)
-            ));
-        }
+        let Some((side, support)) = met(case, site) else { continue };
+        let what = match support {
+            Support::Roller => {
+                "holds at the edge a part of what it presses with across that face, which is missing in its force (of a base of 22 \
+                 degrees on 8 cells 12 % of the horizontal part); the force along that face is whole"
+                    .to_owned()
+            }
+            _ => format!(
+                "is fixed and holds at the edge a part of what it presses with, which is missing in its force (4 % on a wall of 16 \
+                 cells, 8 % on one of 8); {side} = \"roller\" or {{ friction = ... }} holds none of it, and a [[rigid]] body has \
+                 all"
+            ),
+        };
+        report.warn(format!("history `{}`: {} meets {side}, which {what}", history.name, name_of_strip(case, number)));
     }
 }
 
@@ -219,16 +225,23 @@ fn is_of_force(history: &History, number: usize, case: &Case) -> bool {
     }
 }
 
-/// The fixed face that what is held there meets, on which it does not lie.
-fn met(case: &Case, site: Site) -> Option<&'static str> {
+/// The face that what is held there meets, on which it does not lie, and which holds a part of what it presses with.
+fn met(case: &Case, site: Site) -> Option<(&'static str, Support)> {
     let (corners, lower, upper) = (corners(site, &case.grid), case.grid.lower(), case.grid.upper());
+    let normal = normal_of(site);
     Side::of(case.geometry).iter().enumerate().find_map(|(axis, sides)| {
-        let is_met = |upper_one: &bool| {
-            let at = if *upper_one { upper[axis] } else { lower[axis] };
+        let met = |upper_one: bool| {
+            let at = if upper_one { upper[axis] } else { lower[axis] };
             let on = corners.map(|corner| (corner[axis] - at).abs() <= ON * (upper[axis] - lower[axis]));
-            case.boundary[axis][usize::from(*upper_one)] == Support::Fixed && on[0] != on[1]
+            let support = case.boundary[axis][usize::from(upper_one)];
+            let holds = match support {
+                Support::Fixed => true,
+                Support::Roller => (ON..1.0 - ON).contains(&normal[axis].abs()),
+                _ => false,
+            };
+            (holds && on[0] != on[1]).then(|| (sides[usize::from(upper_one)].word(), support))
         };
-        [false, true].into_iter().find(is_met).map(|upper_one| sides[usize::from(upper_one)].word())
+        met(false).or_else(|| met(true))
     })
 }
 

@@ -212,3 +212,25 @@ fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
     let foot = [value[0] + growth[0], value[1] + growth[1]];
     assert!((case.tractions[0].largest() - foot[0].hypot(foot[1])).abs() < 1e-9);
 }
+
+/// A wall on a fixed base, and an inclined base that a plane of symmetry cuts: the nodes of the edge hold a part.
+#[test]
+fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
+    let warned = |strip: &str, more: &[&str]| {
+        let strip = format!("prescribed.0={{name=\"wall\", {strip}, displacement=[0.01, 0]}}");
+        let force = "history.0={quantity=\"reaction\", of=\"wall\", name=\"wall\"}";
+        let warnings = valid(STATIC, &[&[strip.as_str(), force], more].concat()).warnings;
+        warnings.into_iter().filter(|told| told.contains("meets")).collect::<Vec<_>>()
+    };
+    let wall = "from=[0, 0], to=[0, 1]";
+    let fixed = warned(wall, &[]);
+    assert!(fixed.len() == 1 && fixed[0].contains("prescribed.0 meets bottom, which is fixed"), "{fixed:?}");
+    assert!(warned(wall, &["boundary.bottom=roller", "boundary.right=roller"]).is_empty());
+    let cone = [
+        "boundary.left=roller",
+        "body.0={material=\"soil\", polygon=[[0, 0], [2, 0], [2, 1], [0, 1.4]], points_per_cell=3}",
+    ];
+    let askew = warned("from=[0, 1.4], to=[1, 1.2]", &cone);
+    assert!(askew.len() == 1 && askew[0].contains("meets left, which holds at the edge"), "{askew:?}");
+    assert!(warned("from=[0.5, 1.3], to=[1.5, 1.1]", &cone).is_empty());
+}

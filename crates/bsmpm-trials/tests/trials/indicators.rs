@@ -55,7 +55,17 @@ fn they_are_the_same_on_1_2_3_and_4_ranks() {
         all.sort_unstable();
         all
     };
-    assert_eq!(names, sorted(&["energy-growth", "front-setback", "smoothing-length", "step-advance", "support-pull"]));
+    assert_eq!(
+        names,
+        sorted(&[
+            "energy-growth",
+            "front-setback",
+            "smoothing-length",
+            "step-advance",
+            "support-pull",
+            "wall-velocity"
+        ])
+    );
     let footing = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let names = agree(&footing, &["--max-steps", "4"], 75);
     assert_eq!(names, sorted(&["background-work", "slip", "smoothing-length", "support-pull"]));

@@ -73,6 +73,20 @@ fn a_body_that_hangs_on_a_face_is_told_and_one_that_lies_on_it_is_not() {
     assert!(pull.unusual && pull.value > 0.9 && !pull.advice.is_empty(), "{pull:?}");
 }
 
+/// A layer of one cell slides on a fixed base: its points keep a velocity that is not their motion.
+#[test]
+fn velocities_beside_a_fixed_face_that_are_no_motion_are_told() {
+    let case = std::fs::read_to_string(shipped("validation/sliding_layer.toml")).unwrap();
+    for (mass, told) in [("lumped", true), ("consistent", false)] {
+        let scratch = Scratch::with_case(&case);
+        let mass = format!("analysis.mass={mass}");
+        scratch.mpirun(2, &["case.toml", "-q", "--set", "analysis.end=0.03", "--set", &mass]).expect(0);
+        let found = &manifest(&scratch.path("case.out")).indicators["wall-velocity"];
+        println!("{mass}: {}", found.value);
+        assert!(found.unusual == told && found.advice.is_empty() != told, "{mass}: {found:?}");
+    }
+}
+
 /// A background as stiff as the body carries half of it.
 #[test]
 fn a_background_that_carries_the_body_is_told() {

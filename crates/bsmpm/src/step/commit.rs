@@ -8,6 +8,7 @@
 //! 1.33), as nothing resists, so that tau/J lies outside of the yield surface that tau is on.
 
 use crate::error::StepError;
+use crate::exact::Exact;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::{Response, Separation};
@@ -68,6 +69,9 @@ pub struct Committed {
     pub advance: f64,
     /// m3  of water that the points took in, over all ranks
     pub content: f64,
+    /// J  kinetic energy of points beside fixed faces beyond that of their motion (see [`beside_fixed`]); in dynamics
+    /// with such a face
+    pub beside_fixed: Option<f64>,
 }
 
 /// What is kept of the constitution's answer to the converged step at a point.
@@ -143,6 +147,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     let du = transfer::to_points::<D, D, _>(shape, &u, |_, du| Vector::from(du));
     let mut advance = [du.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt()];
     halo.maximum(&mut advance);
+    let beside_fixed = nodes.inertia.as_ref().and_then(|inertia| beside_fixed(model, points, (&du, inertia.dt), halo));
     for (p, du) in du.into_iter().enumerate() {
         points.x[p] += du; // (11a)
         points.u[p] += du; // (11b)
@@ -172,7 +177,31 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
     };
     points.gap = gaps(model, points, &answers);
-    Committed { u, advance: advance[0], smoothed, content }
+    Committed { u, advance: advance[0], smoothed, content, beside_fixed }
+}
+
+/// Kinetic energy, J, that points within a cell of a face which holds all components have by their velocities, beyond
+/// that of the motion `du`, m, which they make in the step of the length `dt`, over all ranks: there the field that
+/// moves them goes to zero, and a lumped mass lets them keep what they had.
+fn beside_fixed<K, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    (du, dt): (&[Vector<D>], f64),
+    halo: &dyn Halo,
+) -> Option<f64> {
+    let fixed = model.boundary.supports.iter().filter(|support| support.velocity == [Some(0.0); D]);
+    let near: Vec<(usize, [f64; 2])> = fixed
+        .map(|support| {
+            let axis = &model.grid.axes()[support.axis];
+            let cell = if support.upper { axis.cells() - 1 } else { 0 };
+            (support.axis, [cell, cell + 1].map(|line| axis.breakpoint(line)))
+        })
+        .collect();
+    let v = &points.motion.as_ref().filter(|_| !near.is_empty())?.v;
+    let is_near = |p: &usize| near.iter().any(|(axis, [from, to])| (*from..=*to).contains(&points.x[*p][*axis]));
+    let excess = |p: usize| 0.5 * points.mass[p] * (v[p].norm_squared() - (du[p] / dt).norm_squared());
+    let sum: Exact = (0..points.len()).filter(is_near).map(excess).collect();
+    Some(halo.total(&[sum])[0])
 }
 
 /// Gap of every point after the step, if some material closes its gaps.

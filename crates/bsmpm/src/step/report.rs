@@ -68,6 +68,9 @@ pub struct StepReport {
     pub turnover: Option<Turnover>,
     /// m  the farthest that a point moved, over all ranks
     pub advance: f64,
+    /// J  kinetic energy that points within a cell of a fixed face have beyond that of their motion, in dynamics with
+    /// such a face
+    pub beside_fixed: Option<f64>,
     /// what left the grid, if anything did
     pub outflow: Option<Outflow>,
     /// what the water did, where it flows
@@ -103,6 +106,7 @@ impl StepReport {
             energy: None,
             turnover: None,
             advance: 0.0,
+            beside_fixed: None,
             outflow: None,
             water: WaterReport::of(problem, found),
             smoothed: 0.0,
