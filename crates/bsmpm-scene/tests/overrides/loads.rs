@@ -101,12 +101,12 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
         ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "bodies lie on both sides of it"),
         ("circle = { center = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "no part of it is inside the grid"),
         ("circle = { center = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "no body is at"),
-        ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "only one of stress, pressure"),
+        ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "only one of stress, pressure, "),
         (
             "from = [0.0, 1.25], circle = { center = [0.5, 2.0], radius = 0.4 }, pressure = 1e3",
             "only one of from, circle",
         ),
-        ("from = [0.0, 1.25], to = [1.0, 1.25]", "missing: one of stress, pressure"),
+        ("from = [0.0, 1.25], to = [1.0, 1.25]", "missing: one of stress, pressure, "),
         ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = [0, 1]", "expected"),
     ] {
         let message = format!("{:?}", with(traction).expect_err("refused"));
@@ -189,6 +189,32 @@ fn a_pressure_finds_a_body_that_is_thinner_than_cells_are_long() {
         let Push::Pressure { side, .. } = valid(plate, set).tractions[0].push else { panic!() };
         assert_eq!(side, 1.0, "above it, {set:?}");
     }
+}
+
+/// What acts at every row is what the row says, along each axis, and a steady direction takes one load of the physics.
+#[test]
+fn loads_by_rows_of_forces_are_these_forces() {
+    let built = |sets: &[&str]| {
+        let case = set(FULL, sets).expect("a valid case");
+        let idle = case.idle_before(0.0).loads.len();
+        let loads = bsmpm_scene::model::model::<PlaneStrain, 2>(&case).expect("a model").boundary.loads;
+        assert_eq!(loads.len(), idle);
+        loads
+    };
+    let at = |load: &bsmpm::boundary::Load<2>, row: usize| load.traction[0] * load.amplitude[row].1;
+    let traction = |path: &str| format!("traction.0={{ from = [1.0, 0.25], to = [1.0, 1.25], {path} }}");
+    let rows = [[0.0, 300.0], [-2e3, 1e3], [500.0, 0.0]];
+    let turning = traction("stress_path = [[0.1, 0, 300], [0.2, \"-2 kPa\", \"1 kPa\"], [0.3, 500, 0]]");
+    let loads = built(&[&turning]);
+    assert_eq!(loads.len(), 3, "along x, the point load, along y");
+    for (row, wanted) in rows.iter().enumerate() {
+        assert_eq!((at(&loads[0], row) + at(&loads[2], row)).as_slice(), wanted);
+    }
+    let push = "point_load.0={ at = [3.5, 1.25], force_path = [[0.1, 0, \"-3 kN/m\"], [0.2, 0, 750]] }";
+    let loads = built(&[&traction("pressure_path = [[0.1, 0], [0.2, \"-4 kPa\"]]"), push]);
+    assert_eq!(loads.len(), 2, "of steady directions");
+    assert_eq!([0, 1].map(|row| at(&loads[0], row).norm()), [0.0, 4e3]);
+    assert_eq!([0, 1].map(|row| at(&loads[1], row)[1]), [-3e3, 750.0]);
 }
 
 /// Stress by depth on an upright surface, 1 m high, in a few pieces: its resultant to round-off, its moment about the
