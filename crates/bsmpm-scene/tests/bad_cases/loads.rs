@@ -318,6 +318,13 @@ pub const QUASI_STATIC: &[Row] = &[
         "pseudo-time without unit",
     )
     .down(2),
+    row(
+        "[output]",
+        "[[prescribed]]\nface = \"top\"\npath = [[\"1 s\", 0, 0], [\"2 s\", 0, 1]]\n[output]",
+        "prescribed.0.path",
+        "column 1 of all 2 rows: found \"1 s\"; quasi-static time is a pseudo-time without unit: a number",
+    )
+    .down(2),
     row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "there is no [footing]")
         .down(1),
     row("[output]", "[[history]]\nquantity = \"penetration\"\n[output]", "history.0.quantity", "there is no [footing]")
