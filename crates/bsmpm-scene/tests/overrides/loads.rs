@@ -211,7 +211,8 @@ fn loads_by_rows_of_forces_are_these_forces() {
         assert_eq!((at(&loads[0], row) + at(&loads[2], row)).as_slice(), wanted);
     }
     let push = "point_load.0={ at = [3.5, 1.25], force_path = [[0.1, 0, \"-3 kN/m\"], [0.2, 0, 750]] }";
-    let loads = built(&[&traction("pressure_path = [[0.1, 0], [0.2, \"-4 kPa\"]]"), push]);
+    let level = "traction.0={ from = [0, 1.25], to = [1, 1.25], pressure_path = [[0.1, 0], [0.2, \"-4 kPa\"]] }";
+    let loads = built(&[level, push]);
     assert_eq!(loads.len(), 2, "of steady directions");
     assert_eq!([0, 1].map(|row| at(&loads[0], row).norm()), [0.0, 4e3]);
     assert_eq!([0, 1].map(|row| at(&loads[1], row)[1]), [-3e3, 750.0]);
@@ -237,4 +238,30 @@ fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
     }
     let foot = [value[0] + growth[0], value[1] + growth[1]];
     assert!((case.tractions[0].largest() - foot[0].hypot(foot[1])).abs() < 1e-9);
+}
+
+/// A section has a part of what acts within two cells, but for what acts where the material ends or far to both sides.
+#[test]
+fn sections_beside_what_acts_are_warned_of() {
+    let block = "geometry = 'plane-strain'\nanalysis = { type = 'quasi-static', steps = 4 }\n\
+                 grid = { lower = [0, 0], upper = [8, 6], cell = 0.5, order = 'quadratic' }\n\
+                 material.soil = { model = 'hencky', young = 1e6, poisson = 0.3 }\nboundary = { bottom = 'fixed' }\n\
+                 [[body]]\nmaterial = 'soil'\nbox = { lower = [0, 0], upper = [8, 4] }\npoints_per_cell = 2\n";
+    let told = |section: &str, acts: &str| {
+        let case = format!("{block}[[history]]\nquantity = 'section-forces'\n{section}\n{acts}");
+        let warnings = valid(&case, &[]).warnings;
+        warnings.iter().filter(|told| told.contains("of the section at the start")).count()
+    };
+    let strip = "[[prescribed]]\nfrom = [2, 2]\nto = [6, 2]\ndisplacement = [0, -0.1]";
+    let level = |y: f64| format!("from = [0, {y}]\nto = [8, {y}]");
+    let upright = |x: f64| format!("from = [{x}, 0]\nto = [{x}, 4]");
+    assert_eq!([1.0, 1.25, 2.0, 2.75, 3.0].map(|y| told(&level(y), strip)), [0, 1, 1, 1, 0], "level, beside a strip");
+    assert_eq!([1.0, 2.5, 4.0, 5.5, 7.0].map(|x| told(&upright(x), strip)), [0, 1, 0, 1, 0], "upright, at its ends");
+    let footing = "[footing]\nfrom = [2, 4]\nto = [6, 4]\ndisplacement = [0, -0.1]";
+    assert_eq!([3.25, 3.75, 4.0].map(|y| told(&level(y), footing)), [0, 0, 0], "where the material ends");
+    assert_eq!([2.5, 4.0].map(|x| told(&upright(x), footing)), [1, 0], "upright");
+    assert_eq!(told("from = [2.5, 0]\nto = [2.5, 2]", footing), 0, "ends far below");
+    let pipe = "[[rigid]]\nname = 'pipe'\ncircle = { center = [4, 4.5], radius = 0.5 }\ndisplacement = [0, -0.1]";
+    assert_eq!([told(&upright(4.0), pipe), told(&upright(6.0), pipe)], [1, 0]);
+    assert_eq!(told(&level(2.5), "[[point_load]]\nat = [4, 2]\nforce = [0, -1]"), 1);
 }
