@@ -13,7 +13,10 @@ pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
 pub use flow::{Drain, DrainSite, Flow, Inflow};
 pub use history::{Check, Column, Counted, Face, History, Quantity};
-pub use loads::{Footing, Initial, Line as LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Site, Traction};
+pub(crate) use loads::keeps_direction;
+pub use loads::{
+    Footing, Initial, Line as LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Shares, Site, Traction,
+};
 pub use profile::Profile;
 pub use rigid::{Rigid, RigidShape, RigidSolid};
 pub use stage::{Acting, FaceSupport, Stage};

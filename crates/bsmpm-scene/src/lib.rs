@@ -45,7 +45,7 @@ pub use case::{
     Acting, Analysis, Base, Body, Case, Check, Checkpoint, Column, Counted, Drain, DrainSite, ElementStage,
     ElementTest, Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, Inflow, Initial, Linear,
     LoadedLine, MotionPath, NamedMaterial, Nonlinear, Output, Plate, PointLoad, Prescribed, Profile, Push, Quantity,
-    Rigid, RigidShape, Site, Solver, Stage, Support, Traction, Water,
+    Rigid, RigidShape, Shares, Site, Solver, Stage, Support, Traction, Water,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

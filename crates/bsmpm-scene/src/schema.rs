@@ -260,6 +260,14 @@ impl fmt::Display for Kind {
     }
 }
 
+/// What a key is called here that has another name elsewhere, or none of its own.
+pub(crate) const CALLED: &[(&str, &str)] = &[
+    ("probe", "[[history]] with `quantity` and `at`; surface = true reads the surface itself"),
+    ("regularisation", "`band_width`, the width of the shear band that softening_strain is of"),
+    ("regularization", "`band_width`, the width of the shear band that softening_strain is of"),
+    ("traction_path", "`stress_path`, and of a pressure `pressure_path`"),
+];
+
 /// Rows from a file, which is read where the case file names it.
 const FILE: &str = "`{ file = \"rows.csv\" }`";
 

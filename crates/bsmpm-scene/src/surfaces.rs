@@ -1,7 +1,8 @@
 //! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
+use crate::case::keeps_direction;
 use crate::grid::vector;
-use crate::{Acting, Base, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Site};
+use crate::{Acting, Base, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Shares, Site};
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Load, Path, RigidBody, Strip, StripContact, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
@@ -71,7 +72,8 @@ pub fn name_of_strip(case: &Case, strip: usize) -> String {
     }
 }
 
-/// Tractions, then point loads, once the stages until the time `t` have begun.
+/// Tractions, then point loads, once the stages until the time `t` have begun; of those whose direction changes the
+/// part along the first axis, and behind all others (`Case::turning_loads`) those along the other axes.
 pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f64) -> Vec<Load<D>> {
     let placed = |at: [f64; 3]| vector::<D, _>(at) - vector(case.grid.lower());
     let tractions = case.tractions.iter().map(|traction| {
@@ -87,22 +89,41 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
                 (pressed.collect(), true)
             }
         };
-        Load { points, traction: values, follows, ramp: traction.ramp, amplitude: traction.amplitude.clone() }
+        (Load { points, traction: values, follows, ramp: traction.ramp, amplitude: Vec::new() }, &traction.amplitude)
     });
-    let forces = case.point_loads.iter().map(|load| Load {
-        amplitude: load.amplitude.clone(),
-        ..Load::dead(
-            vec![SurfacePoint::at(placed(load.at), 1.0 / case.geometry.whole())],
-            vector(load.force),
-            load.ramp,
-        )
+    let forces = case.point_loads.iter().map(|load| {
+        let point = SurfacePoint::at(placed(load.at), 1.0 / case.geometry.whole());
+        (Load::dead(vec![point], vector(load.force), load.ramp), &load.amplitude)
     });
-    let switched = |(number, load): (usize, Load<D>)| match case.acts_since(Acting::Load(number), t) {
-        None => Load { amplitude: vec![(0.0, 0.0)], ..load },
-        Some(since) if since > 0.0 => Load { amplitude: course((load.ramp, &load.amplitude), since), ..load },
-        Some(_) => load,
+    let switched = |(number, (load, shares)): (usize, (Load<D>, &Shares))| {
+        let acting = match case.acts_since(Acting::Load(number), t) {
+            None => vec![(0.0, Vector::zeros())],
+            Some(since) if since > 0.0 => course((load.ramp, shares), since),
+            Some(_) => shares.clone(),
+        };
+        steady(load, &acting, keeps_direction(shares))
     };
-    tractions.chain(forces).enumerate().map(switched).collect()
+    let (mut all, mut further) = (Vec::new(), Vec::new());
+    for (first, others) in tractions.chain(forces).enumerate().map(switched) {
+        all.push(first);
+        further.extend(others);
+    }
+    all.append(&mut further);
+    all
+}
+
+/// A load as one of a steady direction, and those of the axes behind the first if its direction changes.
+fn steady<const D: usize>(load: Load<D>, shares: &Shares, keeps_direction: bool) -> (Load<D>, Vec<Load<D>>) {
+    let along = |axis: usize| shares.iter().map(|(t, share)| (*t, share[axis])).collect();
+    if keeps_direction {
+        return (Load { amplitude: along(0), ..load }, Vec::new());
+    }
+    let part = |axis: usize| Load {
+        traction: load.traction.iter().map(|of| unit::<D>(axis) * of[axis]).collect(),
+        amplitude: along(axis),
+        ..load.clone()
+    };
+    (part(0), (1..D).map(part).collect())
 }
 
 /// Points of a line, with unit normals to the left of a segment, towards the middle of a circle, along a plate's axis.
@@ -130,10 +151,10 @@ fn on_line<K: Kinematics<D>, const D: usize>(
 }
 
 /// The course of a load that begins at the time `since`, where nothing of it acts yet.
-fn course((ramp, amplitude): (f64, &[(f64, f64)]), since: f64) -> Vec<(f64, f64)> {
-    let ramp = [(ramp, 1.0)];
+fn course((ramp, amplitude): (f64, &Shares), since: f64) -> Shares {
+    let ramp = [(ramp, Vector::from_element(1.0))];
     let rows = if amplitude.is_empty() { &ramp[..] } else { amplitude };
-    std::iter::once((since, 0.0)).chain(rows.iter().map(|(t, share)| (since + t, *share))).collect()
+    std::iter::once((since, Vector::zeros())).chain(rows.iter().map(|(t, share)| (since + t, *share))).collect()
 }
 
 /// Points of a circle inside the grid with unit vectors towards its centre, `count` and more in a cell.
@@ -314,7 +335,7 @@ pub(crate) fn rigid_body<const D: usize>(rigid: &Rigid, lower: [f64; 3], geometr
     let load = match (rigid.force == [0.0; 3], rigid.amplitude.is_empty()) {
         (true, _) => Vec::new(),
         (_, true) => vec![(rigid.ramp, force)],
-        (_, false) => rigid.amplitude.iter().map(|(t, share)| (*t, force * *share)).collect(),
+        (_, false) => rigid.amplitude.iter().map(|(t, share)| (*t, force.component_mul(share))).collect(),
     };
     RigidBody {
         acts: true,

@@ -17,6 +17,7 @@ mod profile;
 mod ratio;
 mod reduction;
 mod rigid;
+mod section;
 mod shape;
 mod side;
 mod site;
@@ -146,6 +147,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     stage::check(&mut case, record, report);
     load::sudden(&case, report);
     strip::beside_fixed(&case, report);
+    section::warn_of_neighbours(&case, record, report);
     lines::place(&mut case, record, report);
     physics::check(&case, record, report);
     reduction::at_stage(&mut case, record, report);

@@ -3,6 +3,7 @@
 use super::{Base, Face};
 use bsmpm::boundary::StripContact;
 use bsmpm::material::Profile;
+use bsmpm::tensor::Vector;
 
 /// A displacement as a function of time, linear between its rows; zero at the start, constant after the last row.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,6 +125,15 @@ impl Site {
     }
 }
 
+/// s (quasi-static: pseudo-time), increasing, and the share of a load that acts then along each axis, linear between,
+/// from 0 at time 0; empty: its ramp holds. Of a rigid body in a plane the third is that of the moment.
+pub type Shares = Vec<(f64, Vector<3>)>;
+
+/// Whether a load keeps its direction, reversed at most.
+pub(crate) fn keeps_direction(shares: &Shares) -> bool {
+    shares.iter().all(|(_, share)| *share == Vector::<3>::from_element(share[0]))
+}
+
 /// A load on the body's surface that follows the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traction {
@@ -133,8 +143,8 @@ pub struct Traction {
     pub push: Push,
     /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
     pub ramp: f64,
-    /// s (quasi-static: pseudo-time), increasing, and the share that acts then; empty: the ramp holds
-    pub amplitude: Vec<(f64, f64)>,
+    /// what acts of it in time
+    pub amplitude: Shares,
 }
 
 /// Where a traction acts at the start.
@@ -208,8 +218,8 @@ pub struct PointLoad {
     pub force: [f64; 3],
     /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
     pub ramp: f64,
-    /// s (quasi-static: pseudo-time), increasing, and the share that acts then; empty: the ramp holds
-    pub amplitude: Vec<(f64, f64)>,
+    /// what acts of it in time
+    pub amplitude: Shares,
 }
 
 /// The stress at the start.

@@ -1,6 +1,6 @@
 //! Rigid bodies.
 
-use super::MotionPath;
+use super::{MotionPath, Shares};
 use bsmpm::boundary::rigid::{Outline, Terrain};
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
@@ -30,8 +30,8 @@ pub struct Rigid {
     pub force: [f64; 3],
     /// s (quasi-static: pseudo-time)  over which the force grows linearly; 0: at once
     pub ramp: f64,
-    /// s (quasi-static: pseudo-time), increasing, and the share that acts then; empty: the ramp holds
-    pub amplitude: Vec<(f64, f64)>,
+    /// what acts of it in time
+    pub amplitude: Shares,
     /// m/s, m/s and rad/s  at the start, of free motions
     pub velocity: [f64; 3],
 }

@@ -1,7 +1,8 @@
 //! Stages: which bodies are there when, what acts on them, and which laws they follow.
 
-use super::{Body, Case, DrainSite, Face, MotionPath, NamedMaterial, Support};
+use super::{Body, Case, DrainSite, Face, MotionPath, NamedMaterial, Shares, Support, keeps_direction};
 use bsmpm::boundary::{Contact, Idle};
+use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
 use std::ops::Range;
 
@@ -111,11 +112,21 @@ impl Case {
         let before = self.just_before(t);
         let is_idle = |what: Acting| self.acts_since(what, before).is_none();
         let (drains, inflows) = self.flow.as_ref().map_or((&[][..], 0), |flow| (&flow.drains[..], flow.inflows.len()));
+        let loads = 0..self.tractions.len() + self.point_loads.len();
         let surfaces = (0..drains.len()).filter(|&number| !matches!(drains[number].site, DrainSite::Face(_)));
         Idle {
-            loads: (0..self.tractions.len() + self.point_loads.len()).map(|load| is_idle(Acting::Load(load))).collect(),
+            loads: loads.chain(self.turning_loads()).map(|load| is_idle(Acting::Load(load))).collect(),
             water: surfaces.map(Acting::Drain).chain((0..inflows).map(Acting::Inflow)).map(is_idle).collect(),
         }
+    }
+
+    /// Numbers of the loads whose direction changes, once for every axis but the first: the physics has a load of a
+    /// steady direction for each, behind all others.
+    pub(crate) fn turning_loads(&self) -> impl Iterator<Item = usize> {
+        let tractions = self.tractions.iter().map(|of| &of.amplitude);
+        let all = tractions.chain(self.point_loads.iter().map(|of| &of.amplitude)).enumerate();
+        let turning = all.filter(|(_, shares)| !keeps_direction(shares));
+        turning.flat_map(|(number, _)| std::iter::repeat_n(number, self.grid.dims() - 1))
     }
 
     /// What the file calls the loads that act in full from the start.
@@ -124,8 +135,8 @@ impl Case {
             self.tractions.iter().enumerate().map(|(k, of)| (format!("traction.{k}"), of.ramp, &of.amplitude));
         let forces = self.point_loads.iter().enumerate();
         let forces = forces.map(|(k, of)| (format!("point_load.{k}"), of.ramp, &of.amplitude));
-        let is_sudden = |ramp: f64, amplitude: &[(f64, f64)]| match amplitude.first() {
-            Some((t, share)) => *t == 0.0 && *share != 0.0,
+        let is_sudden = |ramp: f64, amplitude: &Shares| match amplitude.first() {
+            Some((t, share)) => *t == 0.0 && *share != Vector::<3>::zeros(),
             None => ramp == 0.0,
         };
         let acts = |load: usize| self.acts_since(Acting::Load(load), 0.0).is_some();
@@ -171,8 +182,8 @@ impl Case {
     pub(crate) fn still_grows(&self, until: f64) -> bool {
         let before = self.just_before(until);
         // From the last row before which it has another value; it begins with none.
-        let rests = |rows: &[(f64, f64)]| {
-            let values = std::iter::once(0.0).chain(rows.iter().map(|row| row.1));
+        let rests = |rows: &Shares| {
+            let values = std::iter::once(Vector::zeros()).chain(rows.iter().map(|row| row.1));
             rows.iter().zip(values).filter(|(row, before)| row.1 != *before).map(|(row, _)| row.0).fold(0.0, f64::max)
         };
         let tractions = self.tractions.iter().map(|load| load.ramp.max(rests(&load.amplitude)));

@@ -68,7 +68,7 @@ impl<'a> PresetScene<'a> {
             AnalysisType::Consolidation => return None,
         };
         let (steps, why) = match self.interval().map(|interval| self.end() / interval).filter(|rows| *rows > steps) {
-            Some(rows) => (rows, "one for each row of [shaking] or of an amplitude".to_owned()),
+            Some(rows) => (rows, "one for each row of [shaking] or of a load".to_owned()),
             None => (steps, why),
         };
         // Rounding makes no step more.
@@ -151,10 +151,11 @@ impl<'a> PresetScene<'a> {
         moved.into_iter().flat_map(places).collect()
     }
 
-    /// s  the shortest time between two rows of the ground's acceleration or of a load's amplitude
+    /// s  the shortest time between two rows of the ground's acceleration or of a load
     fn interval(&self) -> Option<f64> {
         let loads = self.root.records("traction").iter().chain(self.root.records("point_load"));
-        let amplitudes = loads.filter_map(|load| load.rows("amplitude"));
+        let keys = ["amplitude", "stress_path", "pressure_path", "force_path"];
+        let amplitudes = loads.flat_map(|load| keys.into_iter().filter_map(|key| load.rows(key)));
         let shaking = self.root.record("shaking").and_then(|shaking| shaking.rows("acceleration"));
         let pairs = amplitudes.chain(shaking).flat_map(|rows| rows.windows(2));
         let intervals = pairs.map(|pair| pair[1].numbers[0] - pair[0].numbers[0]);

@@ -134,15 +134,8 @@ impl ValueReader<'_, '_> {
         let read = match &node.value {
             Value::Integer(text) if text.parse::<i64>().is_err() => Err(format!("{} is too large", shortened(text))),
             Value::Integer(text) | Value::Float(text) => unit::finite(text),
-            Value::Text(_) if dimension == Dimension::Time && self.pseudo_time => {
-                Err(format!("found {}; quasi-static time is a pseudo-time without unit: a number", node.show()))
-            }
-            Value::Text(_) if dimension == Dimension::Velocity && self.pseudo_time => Err(format!(
-                "found {}; quasi-static time has no unit: a number, m per unit of pseudo-time",
-                node.show()
-            )),
             Value::Text(_) if dimension == Dimension::Number => return self.unexpected(node),
-            Value::Text(text) => unit::parse(text, dimension),
+            Value::Text(text) => self.worded(node, text, dimension),
             _ => return self.unexpected(node),
         };
         let value = match read {
@@ -161,6 +154,20 @@ impl ValueReader<'_, '_> {
                 .fail(node, format!("{} is out of range; {dimension} is at least {least:e} in SI", node.show()));
         }
         self.bounded(node, value, dimension)
+    }
+
+    /// The value of a number with a unit, or what is wrong with it.
+    fn worded(&self, node: &Node, text: &str, dimension: Dimension) -> Result<f64, String> {
+        match dimension {
+            Dimension::Time if self.pseudo_time => {
+                Err(format!("found {}; quasi-static time is a pseudo-time without unit: a number", node.show()))
+            }
+            Dimension::Velocity if self.pseudo_time => Err(format!(
+                "found {}; quasi-static time has no unit: a number, m per unit of pseudo-time",
+                node.show()
+            )),
+            _ => unit::parse(text, dimension),
+        }
     }
 
     /// The value, if what is derived from it stays finite.
@@ -186,6 +193,9 @@ impl ValueReader<'_, '_> {
             Value::Table(table) if table.get("file").is_some() => return self.unread(node),
             _ => return self.unexpected(node),
         };
+        if let Some(message) = columns.iter().enumerate().find_map(|(k, (of, _))| self.heading(items, k, *of)) {
+            return self.fail(node, message);
+        }
         let mut read: Vec<Option<ListRow>> = Vec::with_capacity(items.len());
         for item in items {
             read.push(self.row(item, columns));
@@ -196,6 +206,26 @@ impl ValueReader<'_, '_> {
             }
         }
         read.into_iter().collect::<Option<Vec<ListRow>>>().map(Datum::Rows)
+    }
+
+    /// What is wrong with a unit that a column has in all of several rows, as the heading of a file gives it.
+    fn heading(&self, rows: &[Node], column: usize, dimension: Dimension) -> Option<String> {
+        let told = |row: &Node| {
+            let Value::List(cells) = &row.value else { return None };
+            let cell = cells.get(column)?;
+            let Value::Text(text) = &cell.value else { return None };
+            let unit = text.split_once(' ')?.1.to_owned();
+            self.worded(cell, text, dimension).err().map(|message| (unit, message))
+        };
+        let (unit, message) = told(rows.first().filter(|_| rows.len() > 1)?)?;
+        let is_of_all = rows[1..].iter().all(|row| told(row).is_some_and(|(other, _)| other == unit));
+        let number = column + 1;
+        is_of_all.then(|| {
+            format!(
+                "column {number} of all {} rows: {message}; of rows from a file the heading says the unit",
+                rows.len()
+            )
+        })
     }
 
     fn row(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<ListRow> {

@@ -162,8 +162,10 @@ pub(crate) static MATERIAL: Table = Table {
             "softening_strain",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "plastic shear strain sqrt(2/3) |dev| at which the strength has its last value (mohr-coulomb-softening: \
-             required); of sensitive-clay the accumulated largest plastic shear at 95 % of the way, xi_95 (required)",
+            "plastic strain kappa, the sum of sqrt(2/3) |dev| of its increments, at which the strength has its last value \
+             (mohr-coulomb-softening: required); of sensitive-clay xi = sqrt(3) kappa, in plane strain the accumulated largest \
+             plastic shear, at 95 % of the way, xi_95 (required). Frames have kappa, of both, as plastic_shear_strain; with \
+             band_width it is that of the cells, and a band's own is 2 h / band_width times as much",
         ),
         key(
             "sensitivity",

@@ -12,6 +12,9 @@ pub(super) const VELOCITY: Kind = Vector(In::Velocity, Range::ANY);
 pub(super) const PATH: Kind = Course(In::Length);
 pub(super) const RECTANGLE: Kind = Kind::Table(&body::BOX);
 pub(super) const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
+/// Of a load whose direction may change.
+const FORCES: &str = "rows [t, x, y] instead (solid: also z), as they are at the times t, increasing; linear between, from \
+                      0 at time 0, constant after the last; time 0 is that of the stage that applies it";
 pub(super) const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
 /// That strength is divided by.
 pub(super) const FACTOR: Range = Range::of(Included(0.1), Included(100.0));
@@ -156,6 +159,14 @@ pub(super) static TRACTION: Table = Table {
             Optional,
             "instead of stress: normal to the surface as it turns and stretches, against the body that lies on one side",
         ),
+        key("stress_path", Course(In::Stress), Optional, FORCES),
+        key(
+            "pressure_path",
+            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Stress, Range::ANY)]),
+            Optional,
+            "rows [t, p] of a pressure instead, t increasing; linear between, from 0 at time 0, constant after the last; time 0 \
+             is that of the stage that applies it",
+        ),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
         key(
             "amplitude",
@@ -169,8 +180,8 @@ pub(super) static TRACTION: Table = Table {
     exclusive: &[
         one_of(&["from", "circle", "rectangle", "disc"], true),
         one_of(&["to", "circle", "rectangle", "disc"], true),
-        one_of(&["stress", "pressure"], true),
-        one_of(&["ramp", "amplitude"], false),
+        one_of(&["stress", "pressure", "stress_path", "pressure_path"], true),
+        one_of(&["ramp", "amplitude", "stress_path", "pressure_path"], false),
     ],
 };
 
@@ -195,10 +206,11 @@ pub(super) static POINT_LOAD: Table = Table {
         key(
             "force",
             Vector(In::LineForce, Range::ANY),
-            Required,
+            Optional,
             "along the axes, per metre of thickness; in axisymmetry of the whole ring, and of a solid, in N, written \"N/m\" \
              as well",
         ),
+        key("force_path", Course(In::LineForce), Optional, FORCES),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
         key(
             "amplitude",
@@ -209,7 +221,7 @@ pub(super) static POINT_LOAD: Table = Table {
         ),
         key("name", Name, Optional, "what stages call it"),
     ],
-    exclusive: &[one_of(&["ramp", "amplitude"], false)],
+    exclusive: &[one_of(&["force", "force_path"], true), one_of(&["ramp", "amplitude", "force_path"], false)],
 };
 
 pub(super) static REDUCTION: Table = Table {

@@ -77,6 +77,12 @@ pub(super) static RIGID: Table = Table {
             Optional,
             "on it, besides gravity, along x and y; axisymmetric: N on the whole body",
         ),
+        key(
+            "force_path",
+            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::LineForce, Range::ANY), (In::LineForce, Range::ANY)]),
+            Optional,
+            "rows [t, x, y] of the force instead, t increasing; linear between, from 0 at time 0, constant after the last",
+        ),
         key("moment", Quantity(In::Number, Range::ANY), Optional, "N m per metre on it, counter-clockwise"),
         key("ramp", loads::RAMP, Default("0.0"), "time over which force and moment grow; 0: at once"),
         key(
@@ -93,6 +99,8 @@ pub(super) static RIGID: Table = Table {
         one_of(&["polygon", "circle", "box", "sphere", "revolve", "terrain"], true),
         one_of(&["displacement", "velocity", "path"], false),
         one_of(&["mass", "density"], false),
-        one_of(&["ramp", "amplitude"], false),
+        one_of(&["force", "force_path"], false),
+        one_of(&["ramp", "amplitude", "force_path"], false),
+        one_of(&["moment", "force_path"], false),
     ],
 };

@@ -92,7 +92,8 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
     for (load, record) in case.point_loads.iter().zip(record.records("point_load")) {
         if load.at[0] == 0.0 && load.force[0] != 0.0 {
-            record.error("force", "on the axis a force has no component along the radius x", report);
+            let key = if record.gives("force_path") { "force_path" } else { "force" };
+            record.error(key, "on the axis a force has no component along the radius x", report);
         }
     }
 }

@@ -3,23 +3,26 @@
 use super::material::profile;
 use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring};
 use super::site::{AroundStrip, places, plate, segment};
-use crate::case::{Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Rigid, Site, Traction};
+use crate::case::{
+    Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Rigid, Shares, Site, Traction,
+};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
 use crate::words::{Geometry, Settled, Start};
 use bsmpm::material::Profile;
 use bsmpm::model::Regime;
+use bsmpm::tensor::Vector;
 
 /// All tractions in the order of the file, without those that have an error.
 pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Traction> {
     let mut read = |record: &Record| {
         let line = line(record, around, report);
-        let push = push(record);
-        let course = course(record, around, report);
-        let (line, push, (ramp, amplitude)) = (line?, push?, course?);
+        let push = push(record, around, report);
+        let (line, (push, (ramp, amplitude))) = (line?, push?);
         let traction = Traction { line, push, ramp, amplitude };
-        let key = if record.gives("pressure") { "pressure" } else { "stress" };
+        let keys = ["pressure", "stress_path", "pressure_path"];
+        let key = keys.into_iter().find(|key| record.gives(key)).unwrap_or("stress");
         warn_of_nothing(record, key, [traction.largest(); 3], report);
         Some(traction)
     };
@@ -78,17 +81,28 @@ fn stresses(record: &Record) -> Option<[Profile; 3]> {
 }
 
 /// What a traction is; on which side of a pressure bodies lie only the whole case tells ([`super::side`]).
-fn push(record: &Record) -> Option<Push> {
-    match record.gives("pressure") {
-        true => Some(Push::Pressure { profile: profile(record, "pressure")?, side: 0.0 }),
-        false => Some(Push::Stress(stresses(record)?)),
+fn push(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(Push, (f64, Shares))> {
+    let pressure = |profile: Profile| Push::Pressure { profile, side: 0.0 };
+    if record.gives("pressure_path") {
+        let (largest, shares) = path(record, "pressure_path", around, report)?;
+        return Some((pressure(Profile::constant(largest[0])), (0.0, shares)));
     }
+    if record.gives("stress_path") {
+        let (largest, shares) = path(record, "stress_path", around, report)?;
+        return Some((Push::Stress(largest.map(Profile::constant)), (0.0, shares)));
+    }
+    let course = course(record, around, report);
+    let push = match record.gives("pressure") {
+        true => pressure(profile(record, "pressure")?),
+        false => Push::Stress(stresses(record)?),
+    };
+    Some((push, course?))
 }
 
 /// All point loads in the order of the file, without those that have an error.
 pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PointLoad> {
     let mut read = |record: &Record| {
-        let (at, course) = (record.vector("at")?, course(record, around, report));
+        let (at, force) = (record.vector("at")?, force(record, around, report));
         let (grid, bodies) = (around.grid?, around.bodies?);
         if let Some(message) = is_beyond(grid, at) {
             record.error("at", message, report);
@@ -99,12 +113,27 @@ pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut R
             );
             record.error("at", message, report);
         }
-        let force = record.vector("force")?;
-        warn_of_nothing(record, "force", force, report);
-        let (ramp, amplitude) = course?;
+        let (force, (ramp, amplitude)) = force?;
+        let key = if record.gives("force_path") { "force_path" } else { "force" };
+        warn_of_nothing(record, key, force, report);
         Some(PointLoad { at, force, ramp, amplitude })
     };
     root.records("point_load").iter().filter_map(&mut read).collect()
+}
+
+/// A force along the axes that exist, and what of it acts in time.
+pub(super) fn force(
+    record: &Record,
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) -> Option<([f64; 3], (f64, Shares))> {
+    if record.gives("force_path") {
+        let (largest, shares) = path(record, "force_path", around, report)?;
+        return Some((largest, (0.0, shares)));
+    }
+    let course = course(record, around, report);
+    let force = if record.gives("force") { record.vector("force")? } else { [0.0; 3] };
+    Some((force, course?))
 }
 
 fn warn_of_nothing(record: &Record, key: &str, load: [f64; 3], report: &mut Report<'_>) {
@@ -129,26 +158,45 @@ fn acts_on_body(
 }
 
 /// Ramp and amplitude of a load, of which one holds.
-pub(super) fn course(
-    record: &Record,
-    around: AroundStrip<'_>,
-    report: &mut Report<'_>,
-) -> Option<(f64, Vec<(f64, f64)>)> {
-    let beyond = |t: f64| around.end.is_some_and(|end| t > end);
+fn course(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(f64, Shares)> {
     if !record.gives("amplitude") {
         let ramp = record.number("ramp")?;
-        if beyond(ramp) {
+        if around.end.is_some_and(|end| ramp > end) {
             let path = record.path_of("ramp");
             report.warn(format!("{path}: {ramp} is beyond the end of the run; it never acts in full"));
         }
         return Some((ramp, Vec::new()));
     }
-    let rows: Vec<(f64, f64)> = increasing(record, "amplitude", report)?.map(|row| (row[0], row[1])).collect();
-    if let Some((t, _)) = rows.iter().find(|(t, _)| beyond(*t)) {
-        report.warn(format!("{}: the row at t = {t} is beyond the end of the run", record.path_of("amplitude")));
+    let rows = in_time(record, "amplitude", around, report)?;
+    Some((0.0, rows.into_iter().map(|row| (row[0], Vector::from_element(row[1]))).collect()))
+}
+
+/// Rows of what acts in time; warned of what of them the steps do not meet.
+fn in_time<'a>(
+    record: &'a Record,
+    key: &str,
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) -> Option<Vec<&'a [f64]>> {
+    let (rows, path): (Vec<&[f64]>, _) = (increasing(record, key, report)?.collect(), record.path_of(key));
+    if let Some(row) = rows.iter().find(|row| around.end.is_some_and(|end| row[0] > end)) {
+        report.warn(format!("{path}: the row at t = {} is beyond the end of the run", row[0]));
     }
-    coarse(&record.path_of("amplitude"), rows.iter().map(|row| row.0), around.dt, report);
-    Some((0.0, rows))
+    coarse(&path, rows.iter().map(|row| row[0]), around.dt, report);
+    Some(rows)
+}
+
+/// The largest load of a path along each axis, by size, and the shares of it; an axis along which nothing acts has
+/// those of one along which something does.
+fn path(record: &Record, key: &str, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<([f64; 3], Shares)> {
+    let rows = in_time(record, key, around, report)?;
+    let along = |row: &[f64], axis: usize| row.get(1 + axis).copied().unwrap_or(0.0);
+    let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+    let largest = [0, 1, 2].map(|axis| rows.iter().map(|row| along(row, axis)).fold(0.0, larger));
+    let acting = [0, 1, 2].into_iter().find(|axis| largest[*axis] != 0.0).unwrap_or(0);
+    let of = [0, 1, 2].map(|axis| if largest[axis] == 0.0 { acting } else { axis });
+    let share = |row: &[f64], axis: usize| if largest[axis] == 0.0 { 0.0 } else { along(row, axis) / largest[axis] };
+    Some((largest, rows.iter().map(|row| (row[0], Vector::from_fn(|axis, _| share(row, of[axis])))).collect()))
 }
 
 /// Warns of steps that are longer than the time between two rows.

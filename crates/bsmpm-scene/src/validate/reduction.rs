@@ -8,6 +8,7 @@ use crate::report::{Report, shortened};
 use crate::words::Failure;
 use bsmpm::model::Regime;
 use bsmpm::schedule::between;
+use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
 
 /// Parts of a step by which stages lie apart.
@@ -215,8 +216,8 @@ fn settle(case: &mut Case, until: f64, end: f64) {
     let points = case.point_loads.iter_mut().map(|load| &mut load.amplitude);
     let amplitudes = tractions.chain(points).chain(case.rigid.iter_mut().map(|rigid| &mut rigid.amplitude));
     for (rows, age) in amplitudes.zip(ages).filter(|(rows, _)| !rows.is_empty()) {
-        let share = between(rows, 0.0, age).or(rows.last().map(|row| row.1));
-        *rows = vec![(end, share.unwrap_or(1.0))];
+        let share = between(rows, Vector::zeros(), age).or(rows.last().map(|row| row.1));
+        *rows = vec![(end, share.unwrap_or(Vector::from_element(1.0)))];
     }
 }
 
@@ -320,7 +321,7 @@ mod tests {
         let timed = ["point_load.0.amplitude=[[4.0, 0.8]]", "water={ level_path = [[0.0, 1.0], [4.0, 2.0]] }"];
         let timed = case(&[&["strength_reduction.unloaded=true", "strength_reduction.stage=end"][..], &timed].concat());
         let [(time, share)] = timed.point_loads[0].amplitude[..] else { panic!("{:?}", timed.point_loads) };
-        assert!(time == timed.analysis.end && (share - 0.2).abs() < 1e-6, "it acts for one second: {share}");
+        assert!(time == timed.analysis.end && (share[0] - 0.2).abs() < 1e-6, "it acts for one second: {share}");
         let level = timed.water.unwrap().table.table(0.0, 0.1).unwrap().0;
         assert!((level - 1.75).abs() < 1e-6, "{level}");
         // What moves as told is held where it is then, beside ground as it is drawn at its first place.

@@ -58,9 +58,9 @@ fn read(
     let free = free(record, report);
     let path = way(record, around.end, report);
     let rotation = rotation(record, report);
-    let course = load::course(record, around, report);
-    let (name, shape, free, path, rotation, (ramp, amplitude)) =
-        (record.text("name")?.to_owned(), shape?, free?, path?, rotation?, course?);
+    let force = load::force(record, around, report);
+    let (name, shape, free, path, rotation, ([fx, fy, _], (ramp, amplitude))) =
+        (record.text("name")?.to_owned(), shape?, free?, path?, rotation?, force?);
     let sizes = surfaces::outline(&shape, [0.0; 2]).sizes();
     let centroid = match &shape {
         RigidShape::Polygon(_) => [sizes.centroid[0], sizes.centroid[1]],
@@ -73,7 +73,6 @@ fn read(
         Geometry::PlaneStrain | Geometry::Solid => sizes.area,
     };
     let mass = mass(record, volume, &sizes)?;
-    let [fx, fy] = if record.gives("force") { record.pair("force")? } else { [0.0; 2] };
     let moment = if record.gives("moment") { record.number("moment")? } else { 0.0 };
     let [vx, vy] = if record.gives("start_velocity") { record.pair("start_velocity")? } else { [0.0; 2] };
     let spin = if record.gives("start_spin") { record.number("start_spin")? } else { 0.0 };
@@ -161,7 +160,8 @@ fn moves_as_given(record: &Record, rigid: &Rigid, report: &mut Report<'_>) {
             record.error(way, format!("it moves along {name}, which is `free`"), report);
         }
         if !rigid.free[axis] && rigid.force[axis] != 0.0 {
-            record.error("force", format!("acts along {name}, which is not `free`"), report);
+            let key = if record.gives("force_path") { "force_path" } else { "force" };
+            record.error(key, format!("acts along {name}, which is not `free`"), report);
         }
         if !rigid.free[axis] && rigid.velocity[axis] != 0.0 {
             record.error("start_velocity", format!("along {name}, which is not `free`"), report);

@@ -46,7 +46,8 @@ pub(super) fn of_pressures(case: &mut Case, root: &Record, report: &mut Report<'
         if let Some((t, _)) = sides.iter().find(|(_, side)| side.is_none() || *side != first) {
             let when = if *t > 0.0 { format!("at t = {t}, when it acts, ") } else { String::new() };
             let told = "bodies lie on both sides of it, or on none: a pressure acts on a free surface";
-            record.error("pressure", format!("{when}{told}"), report);
+            let key = if record.gives("pressure_path") { "pressure_path" } else { "pressure" };
+            record.error(key, format!("{when}{told}"), report);
         }
         case.tractions[number].push = Push::Pressure { profile, side: first.unwrap_or_default() };
     }

@@ -354,7 +354,7 @@ fn follow(case: &mut Case, lasting: &[Body]) {
 }
 
 /// What acts: strips and loads with their records, the key of their place, and places along them.
-fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Record, &'static str, Vec<[f64; 3]>)> {
+pub(super) fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Record, &'static str, Vec<[f64; 3]>)> {
     let mut found = Vec::new();
     let held = case.footing.iter().map(|footing| footing.site);
     let held = held.chain(case.prescribed.iter().map(|prescribed| prescribed.site));

@@ -84,7 +84,7 @@ choice! {
         P = "p",
         /// Deviatoric stress (Pa), sqrt(3/2 s:s).
         Q = "q",
-        /// Accumulated plastic strain.
+        /// Accumulated plastic strain, the sum of sqrt(2/3) |dev| of its increments.
         PlasticStrain = "plastic-strain",
         /// Pressure of the water in the pores (Pa), positive in compression.
         PorePressure = "pore-pressure",

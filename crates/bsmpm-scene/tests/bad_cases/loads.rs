@@ -197,7 +197,7 @@ pub const STRIPS: &[Row] = &[
     row("to   = [1.0, 1.25]", "to = [9.0, 1.25]", "traction.0.to", "outside the grid"),
     row("to   = [1.0, 1.25]", "to = [0.0, 1.25]", "traction.0.to", "the length is zero"),
     row("stress = [0.0, \"-20 kPa\"]", "stress = [0.0, \"-20 kN/m\"]", "traction.0.stress", "expected a stress"),
-    row("stress = [0.0, \"-20 kPa\"]", "", "traction.0", "missing: one of stress, pressure").up(3),
+    row("stress = [0.0, \"-20 kPa\"]", "", "traction.0", "missing: one of stress, pressure, ").up(3),
     row(STRESS, "stress = { value = [0, 1], at_y = 1 }", "traction.0.stress.per_metre", "missing"),
     row(STRESS, "stress = { value = 1e3, at_y = 1, per_metre = [0, 1] }", "traction.0.stress.value", "a list of two"),
     row(
@@ -229,6 +229,22 @@ pub const STRIPS: &[Row] = &[
         "only one of ramp, amplitude",
     )
     .down(1),
+    row(
+        "ramp = \"0.5 s\"",
+        "pressure_path = [[1.0, 1.0]]",
+        "traction.0.pressure_path",
+        "only one of stress, pressure, ",
+    ),
+    row(
+        "stress = [0.0, \"-20 kPa\"]",
+        "stress_path = [[0.5, 1.0, 1.0]]",
+        "traction.0.stress_path",
+        "`ramp` is given too; only one of ramp, amplitude, stress_path, pressure_path",
+    ),
+    row(STRESS, "stress_path = [[0.5, 1.0]]", "traction.0.stress_path", "found a list of 2"),
+    row(STRESS, "stress_path = [[0.5, 1.0, \"1 m\"]]", "traction.0.stress_path", "`m` is a unit of length"),
+    row("force = [0.0, \"-1 kN/m\"]", "", "point_load.0", "missing: one of force, force_path").up(2),
+    row("moment  = 100.0", "force_path = [[0.5, 0.0, 1.0]]", "rigid.1.force_path", "only one of force, force_path"),
     row("ramp = \"0.5 s\"", "amplitude = []", "traction.0.amplitude", "at least one row"),
     row("ramp = \"0.5 s\"", "amplitude = [[0.5, 1.0], [0.5, 0.0]]", "traction.0.amplitude", "not above 0.5"),
     row("ramp = \"0.5 s\"", "amplitude = [[0.5, \"1 kPa\"]]", "traction.0.amplitude", "expected"),
@@ -300,6 +316,13 @@ pub const QUASI_STATIC: &[Row] = &[
         "[[prescribed]]\nface = \"top\"\npath = [[\"1 s\", 0, 0]]\n[output]",
         "prescribed.0.path",
         "pseudo-time without unit",
+    )
+    .down(2),
+    row(
+        "[output]",
+        "[[prescribed]]\nface = \"top\"\npath = [[\"1 s\", 0, 0], [\"2 s\", 0, 1]]\n[output]",
+        "prescribed.0.path",
+        "column 1 of all 2 rows: found \"1 s\"; quasi-static time is a pseudo-time without unit: a number",
     )
     .down(2),
     row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "there is no [footing]")

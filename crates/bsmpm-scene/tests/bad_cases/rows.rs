@@ -8,6 +8,14 @@ pub const LANGUAGE: &[Row] = &[
     row("points_per_cell = 3", "points-per-cell = 3", "body.0.points-per-cell", "did you mean `points_per_cell`?"),
     row("title    =", "young    =", "young", "`young` belongs to [material.NAME]"),
     row("title    =", "colour   =", "colour", "unknown key `colour`"),
+    row("[footing]", "[[probe]]\n[footing]", "probe", "what is meant is [[history]] with `quantity` and `at`"),
+    row(
+        "cohesion    = 2e4",
+        "cohesion = 2e4\nregularisation = 1",
+        "material.clay.regularisation",
+        "what is meant is `band_width`",
+    )
+    .down(1),
     row("[gravity]", "[gravitation]", "gravitation", "unknown key"),
     row("[solver]", "[slover]", "slover", "did you mean `solver`?"),
     row("bottom = \"fixed\"", "bottom = \"friction\"", "boundary.bottom", "expected one of"),

@@ -86,6 +86,10 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
     &[
         ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8\nmass = \"consistent\""),
         ("\"tresca\"", "\"von-mises\""),
+        (
+            "stress = [0.0, \"-20 kPa\"]\nramp = \"0.5 s\"",
+            "stress_path = [[\"0.2 s\", 1.0, \"-1 kPa\"], [1.0, 0.0, 2.0]]",
+        ),
         ("cohesion    = 2e4", "yield_stress = 2e4\nhardening = 1e3"),
         ("every  = \"0.1 s\"", "every_steps = 20\ncheckpoint = { wall = \"10 min\", every_steps = 50, keep = 3 }"),
         ("quantity = \"heave\"", "quantity = \"height\"\nat_x = 1.0"),
@@ -93,6 +97,7 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
     ],
     &[
         ("dt   = \"10 ms\"", "dt = 0.01\ngamma = 0.6"),
+        ("stress = [0.0, \"-20 kPa\"]\nramp = \"0.5 s\"", "pressure_path = [[\"0.2 s\", \"1 kPa\"], [1.0, 0.0]]"),
         ("\"tresca\"", "\"modified-cam-clay\""),
         ("cohesion    = 2e4", "kappa = 0.02\nlambda = 0.1\ncritical_ratio = 1.2\npreconsolidation = \"50 kPa\""),
         ("model    = \"mohr-coulomb\"", "model = \"drucker-prager\""),
@@ -148,6 +153,11 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
             "cohesion    = 2e4",
             "damping = { ratio = 0.05, frequency = 2.0 }\nmu_s = 0.38\nmu_2 = 0.64\n\
              inertial_number = 0.28\ngrain_diameter = \"1 mm\"\ngrain_density = 2500",
+        ),
+        ("force = [0.0, \"-1 kN/m\"]\nramp = 0.5", "force_path = [[\"0.2 s\", 1.0, \"-1 kN/m\"], [1.0, 0.0, 2.0]]"),
+        (
+            "force   = [0.0, \"-1 kN/m\"]\nmoment  = 100.0\nramp    = \"0.25 s\"",
+            "force_path = [[\"0.2 s\", 1.0, \"-1 kN/m\"], [1.0, 0.0, 2.0]]",
         ),
     ],
 ];

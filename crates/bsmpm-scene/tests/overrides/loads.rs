@@ -101,12 +101,12 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
         ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "bodies lie on both sides of it"),
         ("circle = { center = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "no part of it is inside the grid"),
         ("circle = { center = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "no body is at"),
-        ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "only one of stress, pressure"),
+        ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "only one of stress, pressure, "),
         (
             "from = [0.0, 1.25], circle = { center = [0.5, 2.0], radius = 0.4 }, pressure = 1e3",
             "only one of from, circle",
         ),
-        ("from = [0.0, 1.25], to = [1.0, 1.25]", "missing: one of stress, pressure"),
+        ("from = [0.0, 1.25], to = [1.0, 1.25]", "missing: one of stress, pressure, "),
         ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = [0, 1]", "expected"),
     ] {
         let message = format!("{:?}", with(traction).expect_err("refused"));
@@ -191,6 +191,33 @@ fn a_pressure_finds_a_body_that_is_thinner_than_cells_are_long() {
     }
 }
 
+/// What acts at every row is what the row says, along each axis, and a steady direction takes one load of the physics.
+#[test]
+fn loads_by_rows_of_forces_are_these_forces() {
+    let built = |sets: &[&str]| {
+        let case = set(FULL, sets).expect("a valid case");
+        let idle = case.idle_before(0.0).loads.len();
+        let loads = bsmpm_scene::model::model::<PlaneStrain, 2>(&case).expect("a model").boundary.loads;
+        assert_eq!(loads.len(), idle);
+        loads
+    };
+    let at = |load: &bsmpm::boundary::Load<2>, row: usize| load.traction[0] * load.amplitude[row].1;
+    let traction = |path: &str| format!("traction.0={{ from = [1.0, 0.25], to = [1.0, 1.25], {path} }}");
+    let rows = [[0.0, 300.0], [-2e3, 1e3], [500.0, 0.0]];
+    let turning = traction("stress_path = [[0.1, 0, 300], [0.2, \"-2 kPa\", \"1 kPa\"], [0.3, 500, 0]]");
+    let loads = built(&[&turning]);
+    assert_eq!(loads.len(), 3, "along x, the point load, along y");
+    for (row, wanted) in rows.iter().enumerate() {
+        assert_eq!((at(&loads[0], row) + at(&loads[2], row)).as_slice(), wanted);
+    }
+    let push = "point_load.0={ at = [3.5, 1.25], force_path = [[0.1, 0, \"-3 kN/m\"], [0.2, 0, 750]] }";
+    let level = "traction.0={ from = [0, 1.25], to = [1, 1.25], pressure_path = [[0.1, 0], [0.2, \"-4 kPa\"]] }";
+    let loads = built(&[level, push]);
+    assert_eq!(loads.len(), 2, "of steady directions");
+    assert_eq!([0, 1].map(|row| at(&loads[0], row).norm()), [0.0, 4e3]);
+    assert_eq!([0, 1].map(|row| at(&loads[1], row)[1]), [-3e3, 750.0]);
+}
+
 /// Stress by depth on an upright surface, 1 m high, in a few pieces: its resultant to round-off, its moment about the
 /// foot to the midpoint rule's error, growth times piece^2 times height/12.
 #[test]
@@ -233,4 +260,30 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
     let askew = warned("from=[0, 1.4], to=[1, 1.2]", &cone);
     assert!(askew.len() == 1 && askew[0].contains("meets left, which holds at the edge"), "{askew:?}");
     assert!(warned("from=[0.5, 1.3], to=[1.5, 1.1]", &cone).is_empty());
+}
+
+/// A section has a part of what acts within two cells, but for what acts where the material ends or far to both sides.
+#[test]
+fn sections_beside_what_acts_are_warned_of() {
+    let block = "geometry = 'plane-strain'\nanalysis = { type = 'quasi-static', steps = 4 }\n\
+                 grid = { lower = [0, 0], upper = [8, 6], cell = 0.5, order = 'quadratic' }\n\
+                 material.soil = { model = 'hencky', young = 1e6, poisson = 0.3 }\nboundary = { bottom = 'fixed' }\n\
+                 [[body]]\nmaterial = 'soil'\nbox = { lower = [0, 0], upper = [8, 4] }\npoints_per_cell = 2\n";
+    let told = |section: &str, acts: &str| {
+        let case = format!("{block}[[history]]\nquantity = 'section-forces'\n{section}\n{acts}");
+        let warnings = valid(&case, &[]).warnings;
+        warnings.iter().filter(|told| told.contains("of the section at the start")).count()
+    };
+    let strip = "[[prescribed]]\nfrom = [2, 2]\nto = [6, 2]\ndisplacement = [0, -0.1]";
+    let level = |y: f64| format!("from = [0, {y}]\nto = [8, {y}]");
+    let upright = |x: f64| format!("from = [{x}, 0]\nto = [{x}, 4]");
+    assert_eq!([1.0, 1.25, 2.0, 2.75, 3.0].map(|y| told(&level(y), strip)), [0, 1, 1, 1, 0], "level, beside a strip");
+    assert_eq!([1.0, 2.5, 4.0, 5.5, 7.0].map(|x| told(&upright(x), strip)), [0, 1, 0, 1, 0], "upright, at its ends");
+    let footing = "[footing]\nfrom = [2, 4]\nto = [6, 4]\ndisplacement = [0, -0.1]";
+    assert_eq!([3.25, 3.75, 4.0].map(|y| told(&level(y), footing)), [0, 0, 0], "where the material ends");
+    assert_eq!([2.5, 4.0].map(|x| told(&upright(x), footing)), [1, 0], "upright");
+    assert_eq!(told("from = [2.5, 0]\nto = [2.5, 2]", footing), 0, "ends far below");
+    let pipe = "[[rigid]]\nname = 'pipe'\ncircle = { center = [4, 4.5], radius = 0.5 }\ndisplacement = [0, -0.1]";
+    assert_eq!([told(&upright(4.0), pipe), told(&upright(6.0), pipe)], [1, 0]);
+    assert_eq!(told(&level(2.5), "[[point_load]]\nat = [4, 2]\nforce = [0, -1]"), 1);
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use bsmpm::model::Regime;
 use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::{Geometry, Word};
-use bsmpm_scene::{Case, Counted, MotionPath, Quantity, Rigid, RigidShape, Traction};
+use bsmpm_scene::{Case, Counted, MotionPath, Quantity, Rigid, RigidShape, Shares, Traction};
 use serde::Serialize;
 
 use super::search::{ELASTIC, LEAST};
@@ -381,10 +381,10 @@ fn until(case: &Case, name: &str) -> Result<f64, Error> {
 }
 
 /// What the tractions, then the point loads are multiplied with in time.
-fn amplitudes(case: &Case) -> impl Iterator<Item = &[(f64, f64)]> {
-    let tractions = case.tractions.iter().map(|load| &load.amplitude[..]);
-    let points = case.point_loads.iter().map(|load| &load.amplitude[..]);
-    tractions.chain(points).chain(case.rigid.iter().map(|rigid| &rigid.amplitude[..]))
+fn amplitudes(case: &Case) -> impl Iterator<Item = &Shares> {
+    let tractions = case.tractions.iter().map(|load| &load.amplitude);
+    let points = case.point_loads.iter().map(|load| &load.amplitude);
+    tractions.chain(points).chain(case.rigid.iter().map(|rigid| &rigid.amplitude))
 }
 
 fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {

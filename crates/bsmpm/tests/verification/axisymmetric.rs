@@ -183,6 +183,7 @@ fn volumes_of_cells_and_functions_are_those_of_the_sector() {
         let whole = 0.5 * grid.axes()[0].length().powi(2) * 1.5;
         let cells: f64 = (0..grid.cells()).map(|cell| grid.cell_volume::<Axisymmetric>(&grid.cell_at(cell))).sum();
         let functions: f64 = (0..grid.nodes()).map(|node| grid.node_volume::<Axisymmetric>(node)).sum();
+        println!("order {order}: {:.1e}, {:.1e}", cells / whole - 1.0, functions / whole - 1.0);
         assert!((cells / whole - 1.0).abs() <= 1e-14 && (functions / whole - 1.0).abs() <= 1e-14);
         // sum_I r_I int N_I = int r dV, r_I the Greville places: the moment tells a wrong mean of a function.
         let r = |node: usize| grid.axes()[0].greville(grid.node_at(node)[0]);

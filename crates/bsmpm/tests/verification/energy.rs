@@ -83,6 +83,7 @@ fn the_books_tell_what_damping_takes() {
         tell(&format!("{method:?}"), &course);
         let taken = course.books.flows.plastic / course.books.start;
         let expected = 1.0 - (-2.0 * ratio * omega * 2.0 * PERIOD).exp();
+        println!("damping took {taken:.6}, less 1: {:.1e}", taken / expected - 1.0);
         assert!(course.relative() <= 1e-9 && (taken / expected - 1.0).abs() <= 5e-3, "{taken} for {expected}");
     }
 }

@@ -230,11 +230,13 @@ fn suction_presses_the_skeleton_as_bishop_says() {
         if held(of(p), p) < held(1.0, start) { low = p } else { high = p }
     }
     let (J, p) = (of(low), low);
+    let mut worst = 0.0_f64;
     for (point, found) in scene.points.pore_pressure.as_ref().expect("water flows").iter().enumerate() {
         let (found, F) = (found / p, scene.points.F.at(point).determinant());
-        assert!((found - 1.0).abs() < 1e-6 && ((F - 1.0) / (J - 1.0) - 1.0).abs() < 1e-6, "{found} {F} {J}");
+        worst = worst.max((found - 1.0).abs()).max(((F - 1.0) / (J - 1.0) - 1.0).abs());
+        assert!(worst < 1e-6, "{found} {F} {J}");
     }
-    println!("J {J}, p {p} from {start}");
+    println!("J {J}, p {p} from {start}, off by {worst:.1e}");
 }
 
 /// m  the integral of k_r over the suction head from so dry as makes no difference to `psi`, m.

@@ -20,6 +20,7 @@ const IN_A_PLANE: &[&str] = &[
     "density",
     "inertia",
     "force",
+    "force_path",
     "moment",
     "ramp",
     "amplitude",

@@ -1,0 +1,132 @@
+//! Section forces beside strips, rigid bodies and loads: a section has a part of what acts in the cells at it.
+
+use super::{place, stage};
+use crate::case::{Case, Quantity, RigidShape, RigidSolid};
+use crate::record::Record;
+use crate::report::Report;
+use bsmpm::tensor::Vector;
+
+/// Places along a section at which material is looked for, from one end of its lines to the other.
+const PLACES: usize = 5;
+/// Parts of a cell in which material beside a section is looked for.
+const STEP: f64 = 0.25;
+
+/// A section and the part of the grid that its forces are of.
+struct Cut {
+    middle: Vector<3>,
+    along: Vec<(Vector<3>, f64)>, // unit vectors of its lines, and m: half of their lengths
+    across: Vector<3>,
+    cell: f64,  // m  of the grid, across
+    reach: f64, // m  to either side within which what acts is in the section's forces by a part
+}
+
+impl Cut {
+    fn of(case: &Case, lines: &[[[f64; 3]; 2]]) -> Option<Self> {
+        let ends = lines.iter().map(|line| line.map(Vector::<3>::from));
+        let (mut middle, mut along) = (Vector::zeros(), Vec::new());
+        for [from, to] in ends {
+            middle += (from + to) / (2.0 * lines.len() as f64);
+            along.push(((to - from).try_normalize(0.0)?, 0.5 * (to - from).norm()));
+        }
+        let second = along.get(1).map_or_else(Vector::z, |(line, _)| *line);
+        let across = along.first()?.0.cross(&second).try_normalize(0.0)?;
+        let axes = case.grid.axes.iter().enumerate();
+        let cell = axes.map(|(axis, of)| across[axis].abs() * of.longest()).sum();
+        // A function that is not zero at a place has its node within half of its support, and the cut is a cell wide.
+        let reach = (0.5 * case.grid.order as f64 + 1.0) * cell;
+        Some(Self { middle, along, across, cell, reach })
+    }
+
+    /// Whether a place is within its ends and a cell beyond, and not far from it.
+    fn is_near(&self, at: [f64; 3]) -> bool {
+        let apart = Vector::from(at) - self.middle;
+        apart.dot(&self.across).abs() < self.reach + self.cell
+            && self.along.iter().all(|(along, half)| apart.dot(along).abs() <= half + self.cell)
+    }
+
+    /// m  from the section along its normal to the least and the most of these places
+    fn span(&self, places: &[[f64; 3]]) -> Option<[f64; 2]> {
+        let across = places.iter().map(|at| (Vector::from(*at) - self.middle).dot(&self.across));
+        across.fold(None, |span, at| span.map_or(Some([at; 2]), |[a, b]: [f64; 2]| Some([a.min(at), b.max(at)])))
+    }
+
+    /// m  from the section along (1) or against (-1) its normal to the end of the material between its ends
+    fn room(&self, case: &Case, side: f64) -> f64 {
+        let across = |k: usize| {
+            let part = |of: usize| (2 * of + 1) as f64 / PLACES as f64 - 1.0;
+            let lines = self.along.iter().enumerate();
+            let off = lines.map(|(line, (along, half))| along * (part(k / PLACES.pow(line as u32) % PLACES) * *half));
+            self.middle + off.sum::<Vector<3>>()
+        };
+        let steps = 0..=(2.0 * self.reach / (STEP * self.cell)) as usize;
+        let away = steps.rev().map(|step| step as f64 * STEP * self.cell).find(|away| {
+            let count = PLACES.pow(self.along.len() as u32);
+            let place = |k: usize| (across(k) + self.across * (side * away)).into();
+            (0..count).any(|k| case.bodies.iter().any(|body| place::is_in(body, &case.grid, place(k))))
+        });
+        away.unwrap_or(0.0)
+    }
+
+    /// Whether it has a part of the force of what acts at these places, and not all of it. What crosses it far to both
+    /// sides, or as far as the material goes, acts on both alike, and what acts where the material ends is evaded.
+    fn misses(&self, case: &Case, [least, most]: [f64; 2]) -> bool {
+        if least >= self.reach || most <= -self.reach {
+            return false;
+        }
+        let slack = 1.01 * STEP * self.cell;
+        let beside = |side: f64, [nearest, farthest]: [f64; 2]| {
+            let room = self.room(case, side);
+            Beside {
+                goes_on: farthest >= self.reach || room <= farthest + slack,
+                ends: nearest > -slack && room <= nearest + slack,
+                deep: room >= self.reach,
+            }
+        };
+        let [before, beyond] = [beside(-1.0, [-most, -least]), beside(1.0, [least, most])];
+        let crosses = before.goes_on && beyond.goes_on;
+        !crosses && !(before.ends && beyond.deep) && !(beyond.ends && before.deep)
+    }
+}
+
+/// What acts, and the material, on one side of a section.
+struct Beside {
+    goes_on: bool, // whether it acts as far as the section reaches, or as the material goes
+    ends: bool,    // whether the material ends at all of it
+    deep: bool,    // whether there is material as far as the section reaches
+}
+
+/// Warns of section forces that have a part of the force of a strip, a rigid body or a load.
+pub(super) fn warn_of_neighbours(case: &Case, root: &Record, report: &mut Report<'_>) {
+    for (history, record) in case.histories.iter().zip(root.records("history")) {
+        let Quantity::SectionForces { lines, .. } = &history.quantity else { continue };
+        let Some(cut) = Cut::of(case, lines) else { continue };
+        let acting = stage::surfaces(case, root).into_iter().map(|(_, of, _, places)| (of.path.clone(), places));
+        let acting = acting.chain((0..case.rigid.len()).map(|k| (format!("rigid.{k}"), outline(case, k))));
+        for (name, mut places) in acting {
+            places.retain(|at| cut.is_near(*at) && place::is_at(&case.bodies, &case.grid, *at));
+            if cut.span(&places).is_some_and(|span| cut.misses(case, span)) {
+                let cells = cut.reach / cut.cell;
+                report.warn(format!(
+                    "{}: {name} acts within {cells} cells of the section at the start, and how much of its force there is in \
+                     the section's is a matter of the grid: off by half of it at the section, by up to 9 % a cell away, by \
+                     .1 % from {cells} cells on; put the section as far away, or take smaller cells",
+                    record.path
+                ));
+            }
+        }
+    }
+}
+
+/// Places on a rigid body; of terrain none.
+fn outline(case: &Case, number: usize) -> Vec<[f64; 3]> {
+    let flat = |[x, y]: [f64; 2]| [x, y, 0.0];
+    match &case.rigid[number].shape {
+        RigidShape::Polygon(corners) => {
+            let sides = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]);
+            sides.flat_map(place::along).map(flat).collect()
+        }
+        RigidShape::Circle { center, radius } => place::ring(*center, *radius).map(flat).collect(),
+        RigidShape::InSpace(RigidSolid::Terrain(_)) => Vec::new(),
+        RigidShape::InSpace(solid) => place::over(solid.corners()).collect(),
+    }
+}
