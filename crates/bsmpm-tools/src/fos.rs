@@ -57,8 +57,8 @@ which water flows has a factor so only: of that time, whose pore pressures stay;
 DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and fos_displacement.png (the first
 failed trial), and trials/. Trials that are there and were made from the same case by the same solver are kept.
 
-Rigid bodies hold the soil as they do in the case, and their friction is divided, too; those that move on a way are held where
-they are at the end of the stage.
+Rigid bodies hold the soil as they do in the case, and their friction is divided, too; those that move on a way, and
+strips, are held where they are at the end of the stage.
 
 The factors follow from the trials alone, as if each were made after the other. With --jobs above 1 those that may be asked
 for next are begun in advance; they count only if they are asked for, so the result is the same for any N. One that cannot

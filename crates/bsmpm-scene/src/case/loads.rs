@@ -3,6 +3,7 @@
 use super::{Base, Face};
 use bsmpm::boundary::StripContact;
 use bsmpm::material::Profile;
+use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
 
 /// A displacement as a function of time, linear between its rows; zero at the start, constant after the last row.
@@ -10,6 +11,17 @@ use bsmpm::tensor::Vector;
 pub struct MotionPath {
     /// s (quasi-static: pseudo-time), increasing, and m; of a plane nothing along its normal
     pub rows: Vec<(f64, [f64; 3])>,
+}
+
+impl MotionPath {
+    /// Ends it where it is at the time `until`.
+    pub(crate) fn stay(&mut self, until: f64) {
+        let rows: Vec<(f64, Vector<3>)> = self.rows.iter().map(|(t, moved)| (*t, (*moved).into())).collect();
+        if let Some(moved) = between(&rows, Vector::zeros(), until) {
+            self.rows.retain(|row| row.0 < until);
+            self.rows.push((until, moved.into()));
+        }
+    }
 }
 
 /// A rectangle in space along the axes, or the disc inscribed in it.

@@ -3,7 +3,6 @@
 use super::{MotionPath, Shares};
 use bsmpm::boundary::rigid::{Outline, Terrain};
 use bsmpm::schedule::between;
-use bsmpm::tensor::Vector;
 
 /// A rigid body that pushes and rubs the soil.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,11 +44,7 @@ impl Rigid {
 
     /// Ends its way where it is at the time `until`.
     pub(crate) fn stay(&mut self, until: f64) {
-        let rows: Vec<(f64, Vector<3>)> = self.path.rows.iter().map(|(t, moved)| (*t, (*moved).into())).collect();
-        if let Some(moved) = between(&rows, Vector::zeros(), until) {
-            self.path.rows.retain(|row| row.0 < until);
-            self.path.rows.push((until, moved.into()));
-        }
+        self.path.stay(until);
         if let Some(angle) = between(&self.rotation, 0.0, until) {
             self.rotation.retain(|row| row.0 < until);
             self.rotation.push((until, angle));

@@ -180,6 +180,8 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     retain(&mut case.rigid, &rigid);
     // The ground is as it is drawn, and so are they.
     case.rigid.iter_mut().for_each(|rigid| rigid.stay(0.0));
+    case.footing.iter_mut().for_each(|footing| footing.path.stay(0.0));
+    case.prescribed.iter_mut().for_each(|prescribed| prescribed.path.stay(0.0));
     retain(&mut case.bodies, &bodies);
     case.stages.clear();
     case.flow.iter_mut().for_each(|flow| flow.motion = Motion::Held);

@@ -84,7 +84,8 @@ impl Cut {
         };
         let [before, beyond] = [beside(-1.0, [-most, -least]), beside(1.0, [least, most])];
         let crosses = before.goes_on && beyond.goes_on;
-        !crosses && !(before.ends && beyond.deep) && !(beyond.ends && before.deep)
+        let is_evaded = before.ends && beyond.deep || beyond.ends && before.deep;
+        !(crosses || is_evaded)
     }
 }
 

@@ -55,7 +55,7 @@ pub(super) struct Subject {
     is_grown: bool,
     /// whether the case begins with a stress, which trials do not
     is_stressed: bool,
-    /// rigid bodies that are there, and that are moved
+    /// rigid bodies that are there; these or strips that are moved
     has_rigid: [bool; 2],
     /// water flows until then; in the trials it rests, and has the pressures of that time
     holds_water: bool,
@@ -151,7 +151,7 @@ impl Subject {
             conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
         }
         let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
-        let has_rigid = [!case.rigid.is_empty(), case.rigid.iter().any(Rigid::is_moved)];
+        let has_rigid = [!case.rigid.is_empty(), case.rigid.iter().any(Rigid::is_moved) || is_moved(&case)];
         let holds_water = first.flow.is_some_and(|flow| flow.at_rest == Motion::Held);
         Ok(Self {
             path,
@@ -225,8 +225,8 @@ impl Subject {
                 .to_owned()
         });
         let stopped = self.has_rigid[1].then(|| {
-            "rigid bodies that move as told are held where they are then: what they press with falls as the soil does, and is \
-             no load"
+            "rigid bodies and strips that move as told are held where they are then: what they press with falls as the soil \
+             does, and is no load"
                 .to_owned()
         });
         let held = self.holds_water.then(|| bsmpm_scene::HELD_WATER.to_owned());
@@ -333,7 +333,8 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
             softens,
             "a material's strength follows its plastic strain: what it carries depends on how far it is strained, and trials \
              stiffen the ground so that it hardly is; give its peak or its residual strength as \"mohr-coulomb\", which \
-             bounds the factor from both sides, of cam-clay its undrained or its critical-state strength",
+             bounds the factor from both sides, of sensitive-clay cohesion and cohesion/sensitivity as \"tresca\", of \
+             cam-clay its undrained or its critical-state strength",
         ),
         (
             until.is_none() && !case.stages.is_empty(),
@@ -362,9 +363,10 @@ fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
              is then, or leave its way out",
         ),
         (
-            is_moved(case),
+            until.is_none() && is_moved(case),
             "the case prescribes a motion: what moves as told shows no failure, however little strength is left; give the \
-             load instead of the motion, or run the case itself and read its force against the motion",
+             load instead of the motion, or run the case itself and read its force against the motion, or give --stage NAME, \
+             at whose end what has moved is held where it is, as a wall is",
         ),
     ];
     let found = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason.to_owned());

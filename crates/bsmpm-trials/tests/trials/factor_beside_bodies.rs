@@ -70,7 +70,8 @@ fn a_block_on_rock_has_the_factor_of_its_friction_inclined_to_the_cells_or_not()
 }
 
 /// 1.584 and 1.584 as the toe is held; .969 as it is not. A wall that goes 10 mm away in a stage and is to go on leaves
-/// 1.582, where it stops for good, too; there is more in what moves than in what is held.
+/// 1.582, where it stops for good, too, a strip that has gone 10 mm in 1.588; there is more in what moves than in what
+/// is held.
 #[test]
 fn a_slope_held_by_a_wall_has_the_factor_of_one_held_by_a_face() {
     let ground = ["boundary.right=free", "grid.upper=[30, 12]"];
@@ -92,6 +93,12 @@ fn a_slope_held_by_a_wall_has_the_factor_of_one_held_by_a_face() {
     assert_eq!(on["factor_of_safety"], stops["factor_of_safety"]);
     assert!((estimate(&on) / face - 1.0).abs() < 0.01, "{on}");
     assert!(on["notes"].to_string().contains("are held where they are then"), "{on}");
+    // A strip at the face that goes as far the other way, and stops.
+    let strip = "prescribed=[{ face = \"right\", components = \"normal\", path = [[1, 0, 0], [2, -0.01, 0]] }]";
+    let moved = of(Some("built"), &["boundary.right=free", strip, stages]);
+    println!("{} held by a strip that has moved", estimate(&moved));
+    assert!((estimate(&moved) / face - 1.0).abs() < 0.01, "{moved}");
+    assert!(moved["notes"].to_string().contains("are held where they are then"), "{moved}");
 }
 
 /// A body that no material comes near is none: .970513 and .970514. With bodies equilibrium is sought in two passes, so
