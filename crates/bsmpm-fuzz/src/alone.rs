@@ -11,7 +11,7 @@ use bsmpm::step::{Counts, StepReport, step};
 use bsmpm_scene::{Case, Initial, model};
 
 /// A scene on its one rank.
-pub struct Simulation {
+pub struct SerialRun {
     /// the scene
     pub model: Model<PlaneStrain, 2>,
     /// all points
@@ -22,7 +22,7 @@ pub struct Simulation {
     solver: Trusted,
 }
 
-impl Simulation {
+impl SerialRun {
     /// A run at time 0.
     pub fn new(model: Model<PlaneStrain, 2>, mut points: Points<2>) -> Self {
         points.sort_by_cell(&model.grid);

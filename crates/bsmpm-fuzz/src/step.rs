@@ -2,7 +2,7 @@
 
 mod scene;
 
-use crate::alone::Simulation;
+use crate::alone::SerialRun;
 use arbitrary::Unstructured;
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::PlaneStrain;
@@ -28,7 +28,7 @@ fn try_steps(case: &Case) {
     let told = || format!("in\n{}", case.text);
     let scene = model::model::<PlaneStrain, 2>(case).unwrap_or_else(|error| panic!("{error} {}", told()));
     let points = model::points::<PlaneStrain, 2>(case, 0..case.grid.spans(0), |_| true);
-    let mut run = Simulation::new(scene, points);
+    let mut run = SerialRun::new(scene, points);
     if run.start(case).is_err() {
         return;
     }

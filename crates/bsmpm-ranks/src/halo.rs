@@ -33,17 +33,17 @@ pub struct MpiHalo {
 /// A rank that shares nodes with this one.
 struct Neighbour {
     rank: usize,
-    nodes: Places, // the shared ones, of the window
-    mine: Places,  // those of them that this rank owns
-    theirs: Places,
+    nodes: NodeRuns, // the shared ones, of the window
+    mine: NodeRuns,  // those of them that this rank owns
+    theirs: NodeRuns,
     layers: Vec<SharedLayer>,
     run: Range<usize>, // the shared ones within a layer
 }
 
 /// Nodes of the window, in a message in this order.
-struct Places(Vec<Range<usize>>);
+struct NodeRuns(Vec<Range<usize>>);
 
-impl Places {
+impl NodeRuns {
     fn count(&self) -> usize {
         self.0.iter().map(Range::len).sum()
     }
@@ -100,7 +100,7 @@ impl MpiHalo {
         let rank = world.rank().unsigned_abs() as usize;
         let (q, layer, rows) = (grid.order(), grid.layer_nodes(), &grid.room()[1]);
         let (start, row) = (grid.cells_along()[1].start, layer / grid.nodes_along(1));
-        let places = |nodes: &NodeBox| Places(grid.nodes_within(nodes));
+        let places = |nodes: &NodeBox| NodeRuns(grid.nodes_within(nodes));
         let own = slabs.owned(rank, (q, rows));
         let neighbour = |(other, nodes): (usize, NodeBox)| Neighbour {
             rank: other,

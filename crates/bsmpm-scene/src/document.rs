@@ -23,12 +23,12 @@ pub(crate) enum Value {
     Flag(bool),
     Date(String),
     List(Vec<Node>),
-    Table(Table),
+    Table(DocumentTable),
 }
 
 /// The entries of a table in the order of the file.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Table {
+pub(crate) struct DocumentTable {
     pub(crate) entries: Vec<DocumentEntry>,
 }
 
@@ -40,7 +40,7 @@ pub(crate) struct DocumentEntry {
     pub(crate) node: Node,
 }
 
-impl Table {
+impl DocumentTable {
     pub(crate) fn get(&self, key: &str) -> Option<&DocumentEntry> {
         self.entries.iter().find(|entry| entry.key == key)
     }
@@ -64,7 +64,7 @@ impl Node {
 }
 
 /// The document in `source`; syntax errors go to `report`, one per line.
-pub(crate) fn parse(source: &Source<'_>, report: &mut Report<'_>) -> Table {
+pub(crate) fn parse(source: &Source<'_>, report: &mut Report<'_>) -> DocumentTable {
     let (table, errors) = DeTable::parse_recoverable(source.text);
     let mut last_line = None;
     for error in errors {
@@ -87,7 +87,7 @@ pub(crate) fn parse_value(text: &str, origin: Origin) -> Result<Node, String> {
 
 type Placing<'a> = dyn Fn(std::ops::Range<usize>) -> Origin + 'a;
 
-fn entries(table: &DeTable<'_>, place: &Placing<'_>) -> Table {
+fn entries(table: &DeTable<'_>, place: &Placing<'_>) -> DocumentTable {
     let entry =
         |(key, value): (&toml::Spanned<std::borrow::Cow<'_, str>>, &toml::Spanned<DeValue<'_>>)| DocumentEntry {
             key: key.get_ref().to_string(),
@@ -96,7 +96,7 @@ fn entries(table: &DeTable<'_>, place: &Placing<'_>) -> Table {
         };
     let mut entries: Vec<DocumentEntry> = table.iter().map(entry).collect();
     entries.sort_by_key(|entry| entry.origin);
-    Table { entries }
+    DocumentTable { entries }
 }
 
 fn convert(value: &DeValue<'_>, place: &Placing<'_>) -> Value {

@@ -1,6 +1,6 @@
 //! `--set KEY=VALUE`: one value of the document replaced before anything is validated.
 
-use crate::document::{self, DocumentEntry, Node, Table, Value};
+use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
 use crate::error::Origin;
 use crate::record::UNREAD;
 use crate::report::{Report, shortened};
@@ -13,7 +13,7 @@ const DEEPEST: usize = 7;
 const EACH: &str = "*";
 
 /// Merges the overrides into the document in their order; a later one wins.
-pub(crate) fn apply(document: &mut Table, overrides: &[String], report: &mut Report<'_>) {
+pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: &mut Report<'_>) {
     for (number, text) in overrides.iter().enumerate() {
         let origin = Origin::Override(number);
         let Some((key, value)) = text.split_once('=') else {
@@ -53,7 +53,12 @@ struct Setting<'a> {
 }
 
 impl Setting<'_> {
-    fn in_table(&mut self, table: &mut Table, schema: Option<&'static Schema>, depth: usize) -> Result<(), String> {
+    fn in_table(
+        &mut self,
+        table: &mut DocumentTable,
+        schema: Option<&'static Schema>,
+        depth: usize,
+    ) -> Result<(), String> {
         let name = self.parts[depth];
         if let Some(schema) = schema {
             table.entries.retain(|entry| schema.rivals(name).all(|rival| rival != entry.key));
@@ -70,7 +75,7 @@ impl Setting<'_> {
         if table.get(name).is_none() {
             let value = match kind {
                 Some(Kind::Tables(_)) => Value::List(Vec::new()),
-                _ => Value::Table(Table::default()),
+                _ => Value::Table(DocumentTable::default()),
             };
             let node = Node { origin: self.origin, value };
             table.entries.push(DocumentEntry { key: name.to_owned(), origin: self.origin, node });
@@ -86,7 +91,7 @@ impl Setting<'_> {
     }
 
     /// In a table whose keys are names of the author's choice.
-    fn in_named(&mut self, named: &mut Table, schema: &'static Schema, depth: usize) -> Result<(), String> {
+    fn in_named(&mut self, named: &mut DocumentTable, schema: &'static Schema, depth: usize) -> Result<(), String> {
         let name = self.parts[depth];
         if depth + 1 < self.parts.len() && name == EACH {
             let mut entries = named.entries.iter_mut();
@@ -117,7 +122,7 @@ impl Setting<'_> {
                     return Err(format!("index {index} is beyond the list of {length}"));
                 }
                 if index == length {
-                    let value = if last { self.node.value.clone() } else { Value::Table(Table::default()) };
+                    let value = if last { self.node.value.clone() } else { Value::Table(DocumentTable::default()) };
                     items.push(Node { origin: self.origin, value });
                 }
                 if last {

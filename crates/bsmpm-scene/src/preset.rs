@@ -8,7 +8,7 @@ mod axis;
 mod cells;
 mod scene;
 
-use crate::document::{self, DocumentEntry, Node, Table, Value};
+use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
 use crate::error::Origin;
 use crate::record;
 use crate::report::Report;
@@ -98,7 +98,7 @@ const METHOD: Stabilisation = Stabilisation::ConsistentFBar;
 /// Fills in what the document's `accuracy` stands for, if it has one; whether anything was. What cannot be told from
 /// the rest of the case is an error, which says what it would follow from.
 pub(crate) fn fill(
-    document: &mut Table,
+    document: &mut DocumentTable,
     (source, overrides): (&Source<'_>, &[String]),
     report: &mut Report<'_>,
 ) -> bool {
@@ -112,7 +112,7 @@ pub(crate) fn fill(
         return false;
     }
     let scene = PresetScene::of(&record);
-    let mut filling = Filling { document, origin, accuracy, report, filled: false };
+    let mut filling = Completion { document, origin, accuracy, report, filled: false };
     filling.put("grid", &["order"], &quoted(ORDER), "");
     let cells = scene.cells(preset);
     filling.cells(cells.as_ref(), &scene, preset);
@@ -148,7 +148,7 @@ pub(crate) fn fill(
 }
 
 /// The word that the case gives, if it is one of them, and its place.
-fn chosen(document: &Table) -> Option<(Accuracy, Origin)> {
+fn chosen(document: &DocumentTable) -> Option<(Accuracy, Origin)> {
     let entry = document.get(ACCURACY)?;
     let Value::Text(text) = &entry.node.value else { return None };
     Some((Accuracy::of(text)?, entry.node.origin))
@@ -160,20 +160,20 @@ fn quoted(choice: impl Word) -> String {
 }
 
 /// A document on its way to be complete.
-struct Filling<'a, 'r> {
-    document: &'a mut Table,
+struct Completion<'a, 'r> {
+    document: &'a mut DocumentTable,
     origin: Origin,
     accuracy: Accuracy,
     report: &'a mut Report<'r>,
     filled: bool,
 }
 
-impl Filling<'_, '_> {
+impl Completion<'_, '_> {
     /// Gives the first of these keys of a table the value, unless one of them is given; whether it did.
     fn put(&mut self, table: &str, keys: &[&str], value: &str, why: &str) -> bool {
         let origin = self.origin;
         if self.document.get(table).is_none() {
-            let node = Node { origin, value: Value::Table(Table::default()) };
+            let node = Node { origin, value: Value::Table(DocumentTable::default()) };
             self.document.entries.push(DocumentEntry { key: table.to_owned(), origin, node });
         }
         let Some(DocumentEntry { node: Node { value: Value::Table(inner), .. }, .. }) = self.document.get_mut(table)
@@ -189,7 +189,7 @@ impl Filling<'_, '_> {
 
     /// Tells what the first of these keys of a table would follow from, unless one of them is given.
     fn miss(&mut self, table: &str, keys: &[&str], basis: &str) {
-        let given = |table: &Table| keys.iter().any(|key| table.get(key).is_some());
+        let given = |table: &DocumentTable| keys.iter().any(|key| table.get(key).is_some());
         match self.document.get(table) {
             Some(DocumentEntry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
             _ => {
@@ -252,7 +252,7 @@ impl Filling<'_, '_> {
     }
 }
 
-fn insert(table: &mut Table, key: &str, value: &str, origin: Origin) -> bool {
+fn insert(table: &mut DocumentTable, key: &str, value: &str, origin: Origin) -> bool {
     let Ok(node) = document::parse_value(value, origin) else { return false };
     table.entries.push(DocumentEntry { key: key.to_owned(), origin, node });
     true

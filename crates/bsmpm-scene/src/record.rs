@@ -3,7 +3,7 @@
 mod access;
 mod value;
 
-use crate::document::{self, Node, Value};
+use crate::document::{self, DocumentTable, Node, Value};
 use crate::error::Origin;
 use crate::nearest::nearest;
 use crate::report::{Report, shortened};
@@ -19,11 +19,11 @@ pub(crate) struct Record {
     pub(crate) origin: Origin,
     root: &'static Table,
     table: &'static Table,
-    fields: Vec<Field>,
+    fields: Vec<RecordField>,
 }
 
 #[derive(Clone, Debug)]
-struct Field {
+struct RecordField {
     key: &'static str,
     origin: Origin,
     written: bool,
@@ -67,7 +67,7 @@ struct Context {
 }
 
 /// The whole file, whose table is `root`, as a record; what does not fit goes to `report`.
-pub(crate) fn read(root: &'static Table, document: &document::Table, report: &mut Report<'_>) -> Record {
+pub(crate) fn read(root: &'static Table, document: &DocumentTable, report: &mut Report<'_>) -> Record {
     let kind = document.get("analysis").and_then(|entry| match &entry.node.value {
         Value::Table(analysis) => analysis.get("type"),
         _ => None,
@@ -94,7 +94,7 @@ impl Context {
     fn record(
         self,
         table: &'static Table,
-        written: &document::Table,
+        written: &DocumentTable,
         origin: Origin,
         path: &str,
         report: &mut Report<'_>,
@@ -107,15 +107,15 @@ impl Context {
                 (Some(entry), Presence::Later) => report.error(entry.origin, &path, "not available yet"),
                 (Some(entry), _) => {
                     let datum = self.datum(&key.kind, &entry.node, &path, report);
-                    record.fields.push(Field { key: key.name, origin: entry.node.origin, written: true, datum });
+                    record.fields.push(RecordField { key: key.name, origin: entry.node.origin, written: true, datum });
                 }
                 (None, Presence::Required) => {
                     report.error(origin, &path, format!("missing; it is {}", key.kind));
-                    record.fields.push(Field { key: key.name, origin, written: false, datum: None });
+                    record.fields.push(RecordField { key: key.name, origin, written: false, datum: None });
                 }
                 (None, Presence::Default(text)) => {
                     let datum = self.default(&key.kind, text, (origin, &path), report);
-                    record.fields.push(Field { key: key.name, origin, written: false, datum });
+                    record.fields.push(RecordField { key: key.name, origin, written: false, datum });
                 }
                 (None, Presence::Optional | Presence::Later) => {}
             }
@@ -160,7 +160,7 @@ impl Context {
         }
     }
 
-    fn named(self, table: &'static Table, written: &document::Table, path: &str, report: &mut Report<'_>) -> Datum {
+    fn named(self, table: &'static Table, written: &DocumentTable, path: &str, report: &mut Report<'_>) -> Datum {
         let mut named = Vec::new();
         for entry in &written.entries {
             let path = join(path, &entry.key);
@@ -198,7 +198,7 @@ impl Context {
         (records.len() == items.len()).then_some(Datum::Records(records))
     }
 
-    fn unknown_keys(self, table: &'static Table, written: &document::Table, path: &str, report: &mut Report<'_>) {
+    fn unknown_keys(self, table: &'static Table, written: &DocumentTable, path: &str, report: &mut Report<'_>) {
         const SHOWN: usize = 50;
         let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
         for entry in unknown.by_ref().take(SHOWN) {
@@ -229,7 +229,7 @@ fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-fn exclusive(group: &Group, written: &document::Table, record: &Record, report: &mut Report<'_>) {
+fn exclusive(group: &Group, written: &DocumentTable, record: &Record, report: &mut Report<'_>) {
     let given: Vec<_> = group.keys.iter().filter_map(|key| written.get(key)).collect();
     if let [first, second, ..] = given[..] {
         let message = format!("`{}` is given too; only one of {} may be", first.key, group.keys.join(", "));
@@ -241,7 +241,7 @@ fn exclusive(group: &Group, written: &document::Table, record: &Record, report: 
 }
 
 impl Record {
-    fn field(&self, key: &str) -> Option<&Field> {
+    fn field(&self, key: &str) -> Option<&RecordField> {
         self.fields.iter().find(|field| field.key == key)
     }
 

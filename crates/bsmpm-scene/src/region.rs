@@ -15,7 +15,7 @@ mod volume;
 
 pub(crate) use cells::{CellPlace, Lattice, RegionPart, of_cell};
 pub(crate) use edge::Edge;
-pub(crate) use extent::Extent;
+pub(crate) use extent::AxisExtent;
 pub(crate) use raster::Raster;
 pub(crate) use simple::{PolygonFault, area, bounds, fault};
 pub(crate) use skin::skin;

@@ -221,8 +221,8 @@ impl Kind {
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Quantity(dimension, _) => write!(f, "{}", Quantity(*dimension)),
-            Self::Profile(dimension, _, table) => write!(f, "{}, or {}", Quantity(*dimension), table.header),
+            Self::Quantity(dimension, _) => write!(f, "{}", QuantityWords(*dimension)),
+            Self::Profile(dimension, _, table) => write!(f, "{}, or {}", QuantityWords(*dimension), table.header),
             Self::Gradient(dimension) => write!(f, "{}", PerMetre(*dimension)),
             Self::GradientPair(dimension) => write!(f, "a list of two, each {}", PerMetre(*dimension)),
             Self::Rows(columns) => {
@@ -233,17 +233,17 @@ impl fmt::Display for Kind {
                 write!(f, "a list of rows, each [a time, {dimension}, {dimension}] (solid: of three), or {FILE}")
             }
             Self::Measure => f.write_str("a number, or a string with a unit"),
-            Self::Pair(dimension, _) => write!(f, "a list of two, each {}", Quantity(*dimension)),
+            Self::Pair(dimension, _) => write!(f, "a list of two, each {}", QuantityWords(*dimension)),
             Self::PairProfile(dimension, _, table) => {
-                write!(f, "a list of two (solid: of three), each {}, or {}", Quantity(*dimension), table.header)
+                write!(f, "a list of two (solid: of three), each {}, or {}", QuantityWords(*dimension), table.header)
             }
             Self::Vector(dimension, _) => {
-                write!(f, "a list of two (solid: of three), each {}", Quantity(*dimension))
+                write!(f, "a list of two (solid: of three), each {}", QuantityWords(*dimension))
             }
             Self::Either(dimension, _) => {
-                write!(f, "{}, or a list of two (solid: of three)", Quantity(*dimension))
+                write!(f, "{}, or a list of two (solid: of three)", QuantityWords(*dimension))
             }
-            Self::List(dimension, _) => write!(f, "a list, each item {}", Quantity(*dimension)),
+            Self::List(dimension, _) => write!(f, "a list, each item {}", QuantityWords(*dimension)),
             Self::Count(least, most) => write!(f, "a whole number from {least} to {most}"),
             Self::Choice(words) => write!(f, "{}", OneOf(words)),
             Self::ChoiceOr(words, table) => write!(f, "{}, or a table, {}", OneOf(words), table.header),
@@ -292,9 +292,9 @@ impl fmt::Display for PerMetre {
 }
 
 /// A quantity of a dimension in words.
-struct Quantity(Dimension);
+struct QuantityWords(Dimension);
 
-impl fmt::Display for Quantity {
+impl fmt::Display for QuantityWords {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.0.units().next(), self.0) {
             (None, _) => f.write_str("a number"),

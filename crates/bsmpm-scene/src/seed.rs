@@ -4,7 +4,7 @@
 use crate::case::{Body, Case};
 use crate::grid::GridSpec;
 use crate::grid::vector;
-use crate::region::{CellPlace, Extent, Lattice, Outline, Region, RegionPart, Volume, of_cell};
+use crate::region::{AxisExtent, CellPlace, Lattice, Outline, Region, RegionPart, Volume, of_cell};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::points::Seed;
 use bsmpm::tensor::Vector;
@@ -12,9 +12,9 @@ use std::ops::Range;
 
 impl Body {
     /// Cells that the body reaches into, per axis, if it is a box.
-    fn extents<'a>(&self, grid: &'a GridSpec) -> Option<[Extent<'a>; 2]> {
+    fn extents<'a>(&self, grid: &'a GridSpec) -> Option<[AxisExtent<'a>; 2]> {
         let Region::Box { lower, upper } = &self.region else { return None };
-        Some([0, 1].map(|axis| Extent::new(&grid.axes[axis], lower[axis], upper[axis])))
+        Some([0, 1].map(|axis| AxisExtent::new(&grid.axes[axis], lower[axis], upper[axis])))
     }
 
     /// Cells between the first and the last one along each axis that hold its points.
@@ -127,7 +127,7 @@ fn of_box<'a, K: Kinematics<D>, const D: usize>(
     case: &'a Case,
     body: &'a Body,
     first_id: u64,
-    [across, up]: [Extent<'a>; 2],
+    [across, up]: [AxisExtent<'a>; 2],
     columns: Range<usize>,
 ) -> impl Iterator<Item = Seed<D>> + 'a {
     let cells = across.cells.start.max(columns.start)..across.cells.end.min(columns.end);

@@ -70,7 +70,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let reduction = material::Reduction::of(record);
     let geometry = record.word("geometry");
     let around =
-        material::Around { regime, geometry, grid: placed, bodies: made, stages: stages.as_deref(), reduction };
+        material::CaseFacts { regime, geometry, grid: placed, bodies: made, stages: stages.as_deref(), reduction };
     let materials = material::read_all(record, around, report);
     let mut gravity = gravity(record, end, report);
     let water = water::read(record, (placed, gravity.as_ref()), end, report);

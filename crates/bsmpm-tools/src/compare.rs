@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::picture::chart::{Chart, Curve};
+use crate::picture::chart::{Chart, ChartCurve};
 use crate::picture::colour::{self, INK};
 use crate::picture::legend::{LegendEntry, Mark};
 use crate::{Error, reference};
@@ -150,15 +150,15 @@ fn draw(arguments: &CompareArguments, runs: &Runs, path: &Path) -> Result<(), Er
     for (name, places) in &runs.curves {
         let index = names.iter().position(|other| *other == name).unwrap_or(0);
         let entry = LegendEntry { name: name.clone(), colour: colour::line(index, count), mark };
-        curves.push(Curve { entry, places: places.clone() });
+        curves.push(ChartCurve { entry, places: places.clone() });
     }
     for (index, path) in arguments.references.iter().enumerate() {
         let colour = if index == 0 { INK } else { colour::line(names.len() + index - 1, count) };
         let (name, places) = reference::places(path)?;
-        curves.push(Curve { entry: LegendEntry { name, colour, mark: Mark::Points }, places });
+        curves.push(ChartCurve { entry: LegendEntry { name, colour, mark: Mark::Points }, places });
     }
     let mut legend: Vec<&LegendEntry> = Vec::new();
-    for Curve { entry, .. } in &curves {
+    for ChartCurve { entry, .. } in &curves {
         if !legend.iter().any(|other| (&other.name, other.colour) == (&entry.name, entry.colour)) {
             legend.push(entry);
         }

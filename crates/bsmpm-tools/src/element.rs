@@ -10,13 +10,13 @@ use bsmpm_io::atomic;
 use bsmpm_scene::Case;
 use clap::Args;
 
-use crate::report::Table;
+use crate::report::ReportTable;
 use crate::{Error, case};
 
 mod course;
 mod picture;
 
-use course::Course;
+use course::StressPath;
 
 /// Which tests.
 #[derive(Clone, Debug, Args)]
@@ -87,7 +87,7 @@ pub fn run(arguments: &ElementArguments, told: impl FnMut(&str)) -> Result<(Stri
 }
 
 /// The tests that are wanted, followed to their ends.
-fn chosen(case: &Case, arguments: &ElementArguments) -> Result<Vec<Course>, Error> {
+fn chosen(case: &Case, arguments: &ElementArguments) -> Result<Vec<StressPath>, Error> {
     let known: Vec<&str> = case.elements.iter().map(|test| test.name.as_str()).collect();
     let path = arguments.case.display();
     if known.is_empty() {
@@ -99,12 +99,12 @@ fn chosen(case: &Case, arguments: &ElementArguments) -> Result<Vec<Course>, Erro
         return Err(Error::Usage { reason });
     }
     let wanted = |name: &String| arguments.tests.is_empty() || arguments.tests.contains(name);
-    case.elements.iter().filter(|test| wanted(&test.name)).map(|test| Course::of(case, test)).collect()
+    case.elements.iter().filter(|test| wanted(&test.name)).map(|test| StressPath::of(case, test)).collect()
 }
 
 /// A row for each test: where its deviator is largest.
-fn table(courses: &[Course]) -> String {
-    let mut table = Table::of(courses);
+fn table(courses: &[StressPath]) -> String {
+    let mut table = ReportTable::of(courses);
     let short = crate::record::short;
     table
         .column("test", |course| &course.name)

@@ -28,7 +28,7 @@ mod trial;
 use report::FosReport;
 use search::{GREATEST, LEAST, SearchPlan};
 use subject::Subject;
-use trial::{Trial, Trials};
+use trial::{FosTrial, Trials};
 
 /// Of the files of its tables.
 const NAME: &str = "fos";
@@ -139,7 +139,7 @@ pub(crate) fn factor(arguments: &FosArguments) -> Result<FoundFactor, Error> {
     let middle = || Some(f64::midpoint(finding.last_stable?, finding.first_failed?));
     Ok(FoundFactor {
         factor: finding.estimate.or_else(middle),
-        cost: RunCost { wall_seconds: report.seconds, ..trials().map(Trial::cost).sum() },
+        cost: RunCost { wall_seconds: report.seconds, ..trials().map(FosTrial::cost).sum() },
         kept: trials().all(|trial| trial.kept),
     })
 }
@@ -193,7 +193,7 @@ impl FosArguments {
     }
 }
 
-fn line(trial: &Trial) -> String {
+fn line(trial: &FosTrial) -> String {
     let kept = if trial.kept { ", kept" } else { "" };
     let early = trial.end.early().map(|(load, reason)| format!(", ended at {load:.3} of the load: {reason}"));
     format!(

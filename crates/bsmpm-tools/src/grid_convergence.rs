@@ -14,7 +14,7 @@ const HIGHEST: f64 = 30.0;
 /// How values change from the coarsest to the finest grid; e32 and e21 are their differences.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Course {
+pub(crate) enum ConvergenceType {
     /// They differ by rounding at most.
     Unchanged,
     /// They shrink, with one sign, as those of a positive order do.
@@ -30,7 +30,7 @@ pub(crate) enum Course {
 /// What three values say.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Index {
-    pub course: Course,
+    pub course: ConvergenceType,
     /// p, if the course shows one.
     pub order: Option<f64>,
     /// (r^p f1 - f2) / (r^p - 1), with r = h2/h1
@@ -48,7 +48,7 @@ impl Index {
     pub fn of(h: [f64; 3], f: [f64; 3]) -> Self {
         let course = course(h, f);
         let none = Self { course, order: None, extrapolated: None, fine: None, coarse: None, ratio: None };
-        if !matches!(course, Course::Monotone | Course::Oscillatory) {
+        if !matches!(course, ConvergenceType::Monotone | ConvergenceType::Oscillatory) {
             return none;
         }
         let Some(order) = order(h, f) else { return none };
@@ -61,7 +61,7 @@ impl Index {
         Self {
             order: Some(order),
             // Where the sign changes each time, the limit lies between the values.
-            extrapolated: (course == Course::Monotone).then(|| f[0] + (f[0] - f[1]) / (power(0) - 1.0)),
+            extrapolated: (course == ConvergenceType::Monotone).then(|| f[0] + (f[0] - f[1]) / (power(0) - 1.0)),
             fine,
             coarse,
             ratio: fine.zip(coarse).map(|(fine, coarse)| coarse / (power(0) * fine)).filter(|ratio| ratio.is_finite()),
@@ -70,19 +70,19 @@ impl Index {
     }
 }
 
-fn course(h: [f64; 3], f: [f64; 3]) -> Course {
+fn course(h: [f64; 3], f: [f64; 3]) -> ConvergenceType {
     let (fine, coarse) = (f[1] - f[0], f[2] - f[1]);
     let scale = f.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     if fine.abs() <= NOISE * scale {
-        return Course::Unchanged;
+        return ConvergenceType::Unchanged;
     }
     // Where only the finest grid differs, nothing has begun to converge.
     let has_same_sign = coarse.abs() <= NOISE * scale || coarse / fine > 0.0;
     match (has_same_sign, (coarse / fine).abs() > growth(h, 0.0, has_same_sign)) {
-        (true, true) => Course::Monotone,
-        (false, true) => Course::Oscillatory,
-        (true, false) => Course::Diverging,
-        (false, false) => Course::OscillatoryDiverging,
+        (true, true) => ConvergenceType::Monotone,
+        (false, true) => ConvergenceType::Oscillatory,
+        (true, false) => ConvergenceType::Diverging,
+        (false, false) => ConvergenceType::OscillatoryDiverging,
     }
 }
 
@@ -124,7 +124,7 @@ mod tests {
         for h in [[0.1, 0.2, 0.4], [0.1, 0.15, 0.3], [0.1, 0.3, 0.45], [0.1, 0.13, 0.16]] {
             for order in [0.7, 1.0, 2.0, 3.0] {
                 let found = Index::of(h, values(h, order));
-                assert_eq!(found.course, Course::Monotone, "{h:?} {order}");
+                assert_eq!(found.course, ConvergenceType::Monotone, "{h:?} {order}");
                 // Differences of values cost digits.
                 assert!((found.order.unwrap() - order).abs() < 1e-7, "{h:?} {order}: {found:?}");
                 assert!((found.extrapolated.unwrap() - 5.0).abs() < 1e-7);
@@ -149,7 +149,7 @@ mod tests {
         for h in [[1.0, 2.0, 4.0_f64], [1.0, 1.5, 3.0]] {
             let f = [5.0 + h[0].powf(1.5), 5.0 - h[1].powf(1.5), 5.0 + h[2].powf(1.5)];
             let found = Index::of(h, f);
-            assert_eq!((found.course, found.extrapolated), (Course::Oscillatory, None));
+            assert_eq!((found.course, found.extrapolated), (ConvergenceType::Oscillatory, None));
             assert!((found.order.unwrap() - 1.5).abs() < 1e-9 && found.fine.is_some(), "{found:?}");
         }
     }
@@ -158,11 +158,11 @@ mod tests {
     fn what_does_not_converge_has_no_order() {
         let h = [1.0, 2.0, 4.0];
         for (f, course) in [
-            ([5.0, 5.0, 5.0], Course::Unchanged),
-            ([5.0, 5.0, 4.0], Course::Unchanged),
-            ([5.0, 4.0, 3.5], Course::Diverging),
-            ([5.0, 4.0, 4.5], Course::OscillatoryDiverging),
-            ([0.0, 0.0, 0.0], Course::Unchanged),
+            ([5.0, 5.0, 5.0], ConvergenceType::Unchanged),
+            ([5.0, 5.0, 4.0], ConvergenceType::Unchanged),
+            ([5.0, 4.0, 3.5], ConvergenceType::Diverging),
+            ([5.0, 4.0, 4.5], ConvergenceType::OscillatoryDiverging),
+            ([0.0, 0.0, 0.0], ConvergenceType::Unchanged),
         ] {
             let found = Index::of(h, f);
             assert_eq!((found.course, found.order, found.fine), (course, None, None), "{f:?}");

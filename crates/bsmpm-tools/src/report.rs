@@ -24,7 +24,7 @@ pub(crate) enum Quoted {
 }
 
 /// A row for each of several things, and columns with their headings.
-pub(crate) struct Table<'a, T> {
+pub(crate) struct ReportTable<'a, T> {
     rows: &'a [T],
     columns: Vec<ReportColumn>,
 }
@@ -36,7 +36,7 @@ struct ReportColumn {
     cells: Vec<String>,
 }
 
-impl<'a, T> Table<'a, T> {
+impl<'a, T> ReportTable<'a, T> {
     pub fn of(rows: &'a [T]) -> Self {
         Self { rows, columns: Vec::new() }
     }
@@ -150,8 +150,8 @@ mod tests {
 
     const ROWS: [(&str, &str); 2] = [("[1, 2]", "3"), ("\"q\" | r", "")];
 
-    fn table() -> Table<'static, (&'static str, &'static str)> {
-        let mut table = Table::of(&ROWS);
+    fn table() -> ReportTable<'static, (&'static str, &'static str)> {
+        let mut table = ReportTable::of(&ROWS);
         table.column("a", |row| row.0).right("value", |row| row.1).column("twice", |row| row.1.repeat(2));
         table
     }
@@ -171,6 +171,6 @@ mod tests {
 
     #[test]
     fn a_variant_has_the_word_of_json() {
-        assert_eq!(word(crate::grid_convergence::Course::OscillatoryDiverging), "oscillatory-diverging");
+        assert_eq!(word(crate::grid_convergence::ConvergenceType::OscillatoryDiverging), "oscillatory-diverging");
     }
 }

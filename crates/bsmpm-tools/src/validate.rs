@@ -25,7 +25,7 @@ mod table;
 
 pub use matrix::Depth;
 use matrix::{MatrixRun, MatrixStudy, ValidationMatrix};
-use measured::{Lack, Measured};
+use measured::{Lack, MeasuredNumber};
 use runs::{Launcher, MatrixOutcome};
 use table::{RowVerdict, TableRow};
 
@@ -174,7 +174,7 @@ fn judged(study: &MatrixStudy, row: &matrix::MatrixRow, outcomes: &BTreeMap<Stri
 
 /// How a row stands. A run that broke, or did not come so far, or a number elsewhere is another failure than the known
 /// one; and what is known to fail and does not has changed without the matrix.
-fn verdict(row: &matrix::MatrixRow, found: &Result<Measured, Lack>, is_broken: bool) -> RowVerdict {
+fn verdict(row: &matrix::MatrixRow, found: &Result<MeasuredNumber, Lack>, is_broken: bool) -> RowVerdict {
     match (found, &row.known) {
         (Err(Lack::NotReached(_)), _) if !row.is_judged() => RowVerdict::NotReached,
         _ if !row.is_judged() => RowVerdict::Told,

@@ -75,7 +75,7 @@ pub(super) fn gather(unknowns: &[usize], nodal: &[f64], values: &mut [f64]) {
 
 /// The factor of a definite matrix, and what its applications leave beside their result.
 #[derive(Default)]
-pub(super) struct Factor {
+pub(super) struct DissectionFactor {
     dissection: Dissection,
     is_planned: bool, // for the present unknowns
     standing: Standing,
@@ -90,7 +90,7 @@ pub(super) struct Factor {
     pub cause: Option<SolveError>,
 }
 
-impl Factor {
+impl DissectionFactor {
     /// Forgets the plan, as the unknowns are others.
     pub fn replan(&mut self) {
         self.is_planned = false;
@@ -109,7 +109,7 @@ impl Factor {
 
 /// The factor with its matrix, as KSP's preconditioner.
 pub(super) struct DissectionPc<'a, const D: usize, const C: usize> {
-    pub factor: &'a mut Factor,
+    pub factor: &'a mut DissectionFactor,
     pub matrix: StiffnessOperator<'a, D, C>,
 }
 
@@ -158,7 +158,7 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
     fn back_substitute(&mut self) {
         let _timed = self.matrix.timers.time("linear solve");
         let owned = self.matrix.halo.owned();
-        let Factor { dissection, rhs, solution, .. } = &mut *self.factor;
+        let DissectionFactor { dissection, rhs, solution, .. } = &mut *self.factor;
         let own = |component: usize| owned.contains(Nodal::<C>::node(component));
         dissection.solve(&self.matrix.halo.link(), own, rhs, solution);
     }
@@ -180,7 +180,7 @@ impl<const D: usize, const C: usize> ShellPc for DissectionPc<'_, D, C> {
 
     fn apply(&mut self, r: &[f64], z: &mut [f64]) -> Result<(), PcFailure> {
         let (count, unknowns) = (self.matrix.free.len(), self.matrix.unknowns);
-        let Factor { rhs, solution, .. } = &mut *self.factor;
+        let DissectionFactor { rhs, solution, .. } = &mut *self.factor;
         rhs.clear();
         rhs.resize(count, 0.0);
         solution.resize(count, 0.0);

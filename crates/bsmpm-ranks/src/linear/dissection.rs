@@ -22,7 +22,7 @@ use crate::stencil::Stencil;
 use bsmpm::grid::Grid;
 use bsmpm::nodal::Nodal;
 use factor::Factor;
-use plan::{NONE, Part, Plan};
+use plan::{NONE, Plan, Supernode};
 use reduction::{TreeReduction, add_packed, pack};
 
 /// A factorisation of one rank's share of the matrix. Its memory is kept when the unknowns change, as they do in most
@@ -99,7 +99,8 @@ impl Dissection {
             matrix.resize(order * order, 0.0);
             take(plan, part, (stencil, &places, *scale), columns, matrix);
             for _ in 0..part.children {
-                let (child, packed): (&Part, Vec<f64>) = stack.pop().expect("children come right before their parent");
+                let (child, packed): (&Supernode, Vec<f64>) =
+                    stack.pop().expect("children come right before their parent");
                 let rim: Vec<usize> = child.rim.iter().map(|&number| places[number as usize]).collect();
                 add_packed(&packed, &rim, (columns, part.own.len()), matrix);
             }
@@ -144,7 +145,7 @@ impl Dissection {
 /// shares.
 fn take<const D: usize, const C: usize>(
     plan: &Plan,
-    part: &Part,
+    part: &Supernode,
     (stencil, places, scale): (&Stencil<D, C>, &[usize], f64),
     columns: &mut [f64],
     matrix: &mut [f64],

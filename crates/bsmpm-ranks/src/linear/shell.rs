@@ -2,7 +2,7 @@
 //! program's own factor.
 
 use super::choice::Choice;
-use super::direct::{DissectionPc, Factor, StiffnessOperator, gather};
+use super::direct::{DissectionFactor, DissectionPc, StiffnessOperator, gather};
 use super::spread;
 use super::system::{failed, trusted};
 use super::tally::Tally;
@@ -14,7 +14,7 @@ use petsc_rs::{Ksp, Petsc};
 pub(super) struct ShellSystem<'p> {
     ksp: Ksp<'p>,
     is_preonly: bool,
-    factor: Factor,
+    factor: DissectionFactor,
     unknowns: Vec<usize>,
 }
 
@@ -24,7 +24,7 @@ impl<'p> ShellSystem<'p> {
         let mut ksp = Ksp::new(petsc)?;
         choice.apply(&mut ksp, Symmetry::Definite)?;
         let is_preonly = ksp.type_name()?.as_deref() == Some("preonly");
-        Ok(Self { ksp, is_preonly, factor: Factor::default(), unknowns: Vec::new() })
+        Ok(Self { ksp, is_preonly, factor: DissectionFactor::default(), unknowns: Vec::new() })
     }
 
     /// Other components of this rank are unknown. Collective.

@@ -150,7 +150,7 @@ pub(crate) fn keeps_direction(shares: &Shares) -> bool {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traction {
     /// where at the start
-    pub line: Line,
+    pub line: LoadedLine,
     /// what acts there
     pub push: Push,
     /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
@@ -161,7 +161,7 @@ pub struct Traction {
 
 /// Where a traction acts at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Line {
+pub enum LoadedLine {
     /// m  a segment
     Segment {
         /// one end
@@ -201,17 +201,17 @@ impl Traction {
     /// Ends of a segment, m.
     pub fn ends(&self) -> Option<[[f64; 2]; 2]> {
         match self.line {
-            Line::Segment { from, to } => Some([from, to]),
-            Line::Circle { .. } | Line::Plate(_) => None,
+            LoadedLine::Segment { from, to } => Some([from, to]),
+            LoadedLine::Circle { .. } | LoadedLine::Plate(_) => None,
         }
     }
 
     /// Pa  the largest force per area when fully applied.
     pub fn largest(&self) -> f64 {
         let ends = match self.line {
-            Line::Segment { from, to } => [from[1], to[1]],
-            Line::Circle { center, radius } => [center[1] - radius, center[1] + radius],
-            Line::Plate(plate) => [plate.lower[2], plate.upper[2]],
+            LoadedLine::Segment { from, to } => [from[1], to[1]],
+            LoadedLine::Circle { center, radius } => [center[1] - radius, center[1] + radius],
+            LoadedLine::Plate(plate) => [plate.lower[2], plate.upper[2]],
         };
         let [low, high] = ends.map(|height| match self.push {
             Push::Stress(stress) => stress.iter().fold(0.0, |sum: f64, along| sum.hypot(along.at(height))),

@@ -1,9 +1,9 @@
 //! A document as TOML text again, for the record of a run whose case was overridden.
 
-use super::{Node, Table, Value};
+use super::{DocumentTable, Node, Value};
 use std::fmt::Write;
 
-impl Table {
+impl DocumentTable {
     /// TOML text with the same content; comments are lost.
     pub(crate) fn to_toml(&self) -> String {
         let mut text = String::new();

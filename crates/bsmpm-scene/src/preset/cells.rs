@@ -2,7 +2,7 @@
 
 use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};
-use super::scene::{PresetScene, Segment, around};
+use super::scene::{GradedSegment, PresetScene, around};
 use crate::validate::SQUARE;
 use crate::words::{Side, Support, Word};
 
@@ -174,7 +174,7 @@ impl PresetScene<'_> {
     /// Where strips and loaded segments want cells smaller than `size` (m).
     fn zones(&self, preset: &Preset, size: f64) -> Option<Vec<Zone>> {
         let ends = self.ends()?;
-        let zone = |segment: Segment<'_>| {
+        let zone = |segment: GradedSegment<'_>| {
             let (width, cut) = self.width(&segment, ends);
             let cell = width / preset.along;
             let (reach, places) = (preset.reach * width, self.places(&segment));
@@ -197,7 +197,7 @@ impl PresetScene<'_> {
     }
 
     /// m  Width of a strip or loaded segment; whether it is twice what is there, which a roller cuts in its middle.
-    fn width(&self, segment: &Segment<'_>, ends: [[f64; 2]; 2]) -> (f64, bool) {
+    fn width(&self, segment: &GradedSegment<'_>, ends: [[f64; 2]; 2]) -> (f64, bool) {
         let [from, to] = segment.ends;
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
         let at_roller = |axis: usize, side: usize| {

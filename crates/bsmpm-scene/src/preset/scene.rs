@@ -25,14 +25,14 @@ pub(super) struct PresetScene<'a> {
 }
 
 /// A strip or a loaded segment.
-pub(super) struct Segment<'a> {
+pub(super) struct GradedSegment<'a> {
     pub name: String,
     record: &'a Record,
     /// m
     pub ends: [[f64; 2]; 2],
 }
 
-impl Segment<'_> {
+impl GradedSegment<'_> {
     /// The axis that it lies along, if it does.
     pub(super) fn along(&self) -> Option<usize> {
         let [from, to] = self.ends;
@@ -94,7 +94,7 @@ impl<'a> PresetScene<'a> {
     }
 
     /// Strips and loaded segments.
-    pub(super) fn segments(&self) -> impl Iterator<Item = Segment<'a>> + '_ {
+    pub(super) fn segments(&self) -> impl Iterator<Item = GradedSegment<'a>> + '_ {
         let root = self.root;
         let listed = ["prescribed", "traction"].into_iter().flat_map(move |table| {
             let named = move |(number, record)| (format!("{table}.{number}"), record);
@@ -102,7 +102,7 @@ impl<'a> PresetScene<'a> {
         });
         let footing = root.record("footing").map(|record| ("footing".to_owned(), record));
         footing.into_iter().chain(listed).filter_map(|(name, record)| {
-            Some(Segment { name, record, ends: [record.pair("from")?, record.pair("to")?] })
+            Some(GradedSegment { name, record, ends: [record.pair("from")?, record.pair("to")?] })
         })
     }
 
@@ -138,7 +138,7 @@ impl<'a> PresetScene<'a> {
     }
 
     /// m  where the ends of a strip come to in the run, at every change of its speed
-    pub(super) fn places(&self, segment: &Segment<'_>) -> Vec<[f64; 2]> {
+    pub(super) fn places(&self, segment: &GradedSegment<'_>) -> Vec<[f64; 2]> {
         let (end, record) = (self.end(), segment.record);
         let mut moved = vec![[0.0; 2]];
         for pair in rows(record).windows(2).filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0) {

@@ -149,14 +149,14 @@ struct CellStrip {
 
 /// Sums over the slices of a cell.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sum {
+struct SliceSum {
     area: f64,
     moment: [f64; 2],
     largest: f64,
     within: [f64; 2], // middle of the largest slice
 }
 
-impl Sum {
+impl SliceSum {
     fn add(&mut self, slice: &Slice) {
         let (area, moment) = (slice.area(), slice.moment());
         self.area += area;
@@ -185,7 +185,7 @@ impl CellStrip {
         let size = (self.x[1] - self.x[0]).min(y[1] - y[0]);
         let sub = (self.x[1] - self.x[0]) * (y[1] - y[0]) / (self.n * self.n) as f64;
         let (mut places, mut left) = (Vec::new(), Vec::new());
-        let mut sum = Sum::default();
+        let mut sum = SliceSum::default();
         for a in 0..self.n {
             let edges = self.edges(part(self.x, a, self.n), y[1]);
             for b in 0..self.n {
@@ -218,7 +218,7 @@ impl CellStrip {
     }
 
     /// Covered area of a window that an edge touches, added to the cell's; none if no edge does.
-    fn covered(&self, near: &[Near], window: &Window, sum: &mut Sum) -> Option<f64> {
+    fn covered(&self, near: &[Near], window: &Window, sum: &mut SliceSum) -> Option<f64> {
         let touches = |near: &Near| {
             let [low, high] = near.span;
             low <= window.y[1]
@@ -235,7 +235,7 @@ impl CellStrip {
     }
 
     /// A place inside what the sums are about.
-    fn within(&self, sum: &Sum) -> [f64; 2] {
+    fn within(&self, sum: &SliceSum) -> [f64; 2] {
         let centroid = sum.moment.map(|moment| moment / sum.area);
         let line = intervals(self.near.iter().map(|near| &near.edge), self.shapes, centroid[0]);
         if covers(&line, centroid[1]) { centroid } else { sum.within }

@@ -8,7 +8,7 @@ const SLIVER: f64 = 1e-9;
 
 /// The part of one axis that a box covers.
 #[derive(Clone, Debug)]
-pub(crate) struct Extent<'a> {
+pub(crate) struct AxisExtent<'a> {
     axis: &'a GridAxis,
     /// m  ends of the box, from the grid's lower corner
     ends: [f64; 2],
@@ -16,7 +16,7 @@ pub(crate) struct Extent<'a> {
     pub(crate) cells: Range<usize>,
 }
 
-impl<'a> Extent<'a> {
+impl<'a> AxisExtent<'a> {
     /// Of ends in the case's coordinates, m.
     pub(crate) fn new(axis: &'a GridAxis, lower: f64, upper: f64) -> Self {
         Self::between(axis, [lower - axis.lower(), upper - axis.lower()])

@@ -30,7 +30,7 @@ pub(super) struct LatticeCell {
 }
 
 /// A vertical line with the area that it stands for, m².
-struct Line {
+struct VerticalLine {
     x: [f64; 2],
     area: f64,
     covered: Vec<[f64; 2]>,
@@ -44,7 +44,7 @@ struct Line {
 /// has one point, at that place of its lines that is nearest to the centroid.
 pub(super) fn column(lines: &Lines<'_>, sides: [[f64; 2]; 2], up: &GridAxis, n: usize) -> Vec<LatticeCell> {
     let parts = (0..n * n).map(|k| lines.of([part(sides[0], k / n, n), part(sides[1], k % n, n)]));
-    let parts: Vec<Vec<Line>> = parts.collect();
+    let parts: Vec<Vec<VerticalLine>> = parts.collect();
     let centre = |k: usize| [place(sides[0], k / n, n), place(sides[1], k % n, n)];
     let centres: Vec<Centre> = (0..n * n).map(|k| (centre(k), (lines.covers)(centre(k)))).collect();
     let rows = rows(&parts, up);
@@ -54,9 +54,9 @@ pub(super) fn column(lines: &Lines<'_>, sides: [[f64; 2]; 2], up: &GridAxis, n: 
 
 impl Lines<'_> {
     /// Those of a part of a cell.
-    fn of(&self, sides: [[f64; 2]; 2]) -> Vec<Line> {
+    fn of(&self, sides: [[f64; 2]; 2]) -> Vec<VerticalLine> {
         let [along_x, along_y] = [0, 1].map(|axis| shares(sides[axis], &self.ends[axis], LINES));
-        let at = |x: f64, y: f64, area: f64| Line { x: [x, y], area, covered: (self.covers)([x, y]) };
+        let at = |x: f64, y: f64, area: f64| VerticalLine { x: [x, y], area, covered: (self.covers)([x, y]) };
         along_x.iter().flat_map(|&(x, width)| along_y.iter().map(move |&(y, depth)| at(x, y, width * depth))).collect()
     }
 }
@@ -74,7 +74,7 @@ pub(super) fn shares([lower, upper]: [f64; 2], ends: &[f64], lines: usize) -> Ve
 }
 
 /// Rows of cells that the lines reach.
-fn rows(parts: &[Vec<Line>], up: &GridAxis) -> Range<usize> {
+fn rows(parts: &[Vec<VerticalLine>], up: &GridAxis) -> Range<usize> {
     let covered = || parts.iter().flatten().flat_map(|line| &line.covered);
     let lower = covered().map(|line| line[0]).fold(f64::INFINITY, f64::min);
     let upper = covered().map(|line| line[1]).fold(f64::NEG_INFINITY, f64::max);
@@ -83,9 +83,9 @@ fn rows(parts: &[Vec<Line>], up: &GridAxis) -> Range<usize> {
 
 type Centre = ([f64; 2], Vec<[f64; 2]>);
 
-fn cell((parts, centres): (&[Vec<Line>], &[Centre]), z: [f64; 2], n: usize, row: usize) -> LatticeCell {
+fn cell((parts, centres): (&[Vec<VerticalLine>], &[Centre]), z: [f64; 2], n: usize, row: usize) -> LatticeCell {
     let (mut places, mut left) = (Vec::new(), Vec::new());
-    let (mut sum, mut whole) = (Sum::default(), true);
+    let (mut sum, mut whole) = (VolumeMoments::default(), true);
     for (lines, ([x, y], middle)) in parts.iter().zip(centres) {
         for c in 0..n {
             let height = part(z, c, n);
@@ -116,7 +116,7 @@ fn cell((parts, centres): (&[Vec<Line>], &[Centre]), z: [f64; 2], n: usize, row:
     LatticeCell { row, whole, alone, places }
 }
 
-impl Line {
+impl VerticalLine {
     /// What is covered of it between two heights.
     fn within(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
         let within = self.covered.iter().map(move |[lower, upper]| [lower.max(from), upper.min(to)]);
@@ -126,14 +126,14 @@ impl Line {
 
 /// Volume, m³, and first moments, m⁴, of pieces of lines.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sum {
+struct VolumeMoments {
     volume: f64,
     moment: [f64; 3],
 }
 
-impl Sum {
+impl VolumeMoments {
     /// Adds a piece of a line and gives its volume.
-    fn add(&mut self, line: &Line, [lower, upper]: [f64; 2]) -> f64 {
+    fn add(&mut self, line: &VerticalLine, [lower, upper]: [f64; 2]) -> f64 {
         let volume = line.area * (upper - lower);
         let at = [line.x[0], line.x[1], 0.5 * (lower + upper)];
         self.volume += volume;
@@ -152,8 +152,8 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// The place inside, on a line of a cell between two heights, that is nearest to `to`, the first of several: at its
 /// height or in the middle of what a line has.
-fn nearest_inside(parts: &[Vec<Line>], z: [f64; 2], to: [f64; 3]) -> [f64; 3] {
-    let on = |line: &Line, [lower, upper]: [f64; 2]| {
+fn nearest_inside(parts: &[Vec<VerticalLine>], z: [f64; 2], to: [f64; 3]) -> [f64; 3] {
+    let on = |line: &VerticalLine, [lower, upper]: [f64; 2]| {
         let height = if lower < to[2] && to[2] < upper { to[2] } else { 0.5 * (lower + upper) };
         [line.x[0], line.x[1], height]
     };

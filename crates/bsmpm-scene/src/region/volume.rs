@@ -1,7 +1,7 @@
 //! What a body fills in space: a cuboid, an outline along an axis, or any shape less others.
 
 use super::cells::{CellPlace, of_cell, place};
-use super::extent::Extent;
+use super::extent::AxisExtent;
 use super::lattice::{self, LINES};
 use super::measure;
 use super::solid::{SolidShape, less, plane};
@@ -121,7 +121,7 @@ impl Volume {
         match &self.filling {
             Filling::Box => self.slab_of_box(axes, n, i),
             Filling::Prism { outline, plane, along, ends } => {
-                let extent = Extent::between(&axes[*along], *ends);
+                let extent = AxisExtent::between(&axes[*along], *ends);
                 prism_slab((outline, plane), (*along, &extent), n, i)
             }
             Filling::Lattice { scale } => {
@@ -136,7 +136,7 @@ impl Volume {
 
     fn slab_of_box(&self, axes: &[GridAxis], n: usize, i: usize) -> Vec<CellPlace<3>> {
         let [lower, upper] = self.bounds;
-        let extents = [0, 1, 2].map(|axis| Extent::between(&axes[axis], [lower[axis], upper[axis]]));
+        let extents = [0, 1, 2].map(|axis| AxisExtent::between(&axes[axis], [lower[axis], upper[axis]]));
         if !extents[0].cells.contains(&i) {
             return Vec::new();
         }
@@ -166,7 +166,7 @@ impl Volume {
 
     fn count(&mut self, axes: &[GridAxis], n: usize) {
         let [lower, upper] = self.bounds;
-        let extent = |axis: usize| Extent::between(&axes[axis], [lower[axis], upper[axis]]).cells;
+        let extent = |axis: usize| AxisExtent::between(&axes[axis], [lower[axis], upper[axis]]).cells;
         match &self.filling {
             Filling::Box => {
                 let occupied = [0, 1, 2].map(extent);
@@ -322,7 +322,7 @@ fn through(whole: &SolidShape, cut: &[SolidShape], along: usize) -> Option<(Vec<
 /// Points of slab `i` along axis 0 of a prism.
 fn prism_slab(
     (outline, plane): (&Outline, &GridSpec),
-    (along, extent): (usize, &Extent<'_>),
+    (along, extent): (usize, &AxisExtent<'_>),
     n: usize,
     i: usize,
 ) -> Vec<CellPlace<3>> {

@@ -8,7 +8,7 @@ use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 /// A table in the place of rows, as it is written.
-struct Reference<'a> {
+struct FileReference<'a> {
     span: Range<usize>,
     file: &'a str,
     along: Option<&'a str>,
@@ -27,9 +27,9 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     for value in table.get_ref().values() {
         collect(value, text, &mut references);
     }
-    references.sort_by_key(|reference: &Reference<'_>| reference.span.start);
+    references.sort_by_key(|reference: &FileReference<'_>| reference.span.start);
     let (mut whole, mut from) = (String::with_capacity(text.len()), 0);
-    for Reference { span, file, along } in references {
+    for FileReference { span, file, along } in references {
         let told = |error: Error| Error::new(error.kind(), format!("{file}: {error}"));
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(told)?;
@@ -42,10 +42,10 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
 }
 
 /// The axis that a file names, if it does, and those that the geometry has.
-type Along<'a> = (Option<&'a str>, &'a [&'a str]);
+type AxisNames<'a> = (Option<&'a str>, &'a [&'a str]);
 
 /// Rows of whatever text holds them.
-fn text_rows(bytes: Vec<u8>, along: Along<'_>) -> io::Result<String> {
+fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
     let text = String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "no UTF-8 text"))?;
     let begins = |word: &str| text.trim_start().get(..word.len()).is_some_and(|of| of.eq_ignore_ascii_case(word));
     match (begins("ncols"), begins("solid")) {
@@ -70,7 +70,7 @@ fn read(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// Inline tables with a `file`, and nothing else but perhaps `along`.
-fn collect<'a>(value: &'a toml::Spanned<DeValue<'_>>, text: &str, references: &mut Vec<Reference<'a>>) {
+fn collect<'a>(value: &'a toml::Spanned<DeValue<'_>>, text: &str, references: &mut Vec<FileReference<'a>>) {
     match value.get_ref() {
         DeValue::Array(items) => items.iter().for_each(|item| collect(item, text, references)),
         DeValue::Table(table) => {
@@ -78,7 +78,7 @@ fn collect<'a>(value: &'a toml::Spanned<DeValue<'_>>, text: &str, references: &m
             let is_known = table.keys().all(|key| ["file", "along"].contains(&&**key.get_ref()));
             match word("file") {
                 Some(file) if is_known && text[value.span()].starts_with('{') => {
-                    references.push(Reference { span: value.span(), file, along: word("along") });
+                    references.push(FileReference { span: value.span(), file, along: word("along") });
                 }
                 _ => table.values().for_each(|value| collect(value, text, references)),
             }
@@ -89,7 +89,7 @@ fn collect<'a>(value: &'a toml::Spanned<DeValue<'_>>, text: &str, references: &m
 
 /// Rows as TOML: numbers, with the units of a header if there is one. Cells stand between commas, semicolons or blanks;
 /// `#` starts a comment. Rows of two, a time and a number `along` an axis, get zeros along the others.
-fn rows(text: &str, (along, axes): Along<'_>) -> io::Result<String> {
+fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
     let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
     if let Some(other) = along.filter(|along| !axes.contains(along)) {
         return Err(bad(format!("along = \"{other}\"; allowed: \"{}\"", axes.join("\", \""))));

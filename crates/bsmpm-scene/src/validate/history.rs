@@ -15,12 +15,12 @@ use std::collections::HashSet;
 const MOST: usize = 1000;
 
 /// Materials and bodies of the case, without errors.
-type Made<'a> = Option<(&'a [NamedMaterial], &'a [Body])>;
+type CaseBodies<'a> = Option<(&'a [NamedMaterial], &'a [Body])>;
 
 /// All histories in the order of the file, without those that have an error.
 pub(super) fn read_all(
     root: &Record,
-    (regime, grid, made): (Option<Regime>, Option<&GridSpec>, Made<'_>),
+    (regime, grid, made): (Option<Regime>, Option<&GridSpec>, CaseBodies<'_>),
     report: &mut Report<'_>,
 ) -> Vec<History> {
     let records = root.records("history");
@@ -43,7 +43,7 @@ pub(super) fn read_all(
 
 fn read(
     (root, record): (&Record, &Record),
-    (regime, grid, made): (Option<Regime>, Option<&GridSpec>, Made<'_>),
+    (regime, grid, made): (Option<Regime>, Option<&GridSpec>, CaseBodies<'_>),
     report: &mut Report<'_>,
 ) -> Option<History> {
     let measured: Measurement = record.word("quantity")?;
@@ -188,7 +188,7 @@ fn own_keys(measured: Measurement, geometry: Option<Geometry>) -> (&'static [&'s
 fn quantity(
     measured: Measurement,
     record: &Record,
-    (root, grid, made): (&Record, Option<&GridSpec>, Made<'_>),
+    (root, grid, made): (&Record, Option<&GridSpec>, CaseBodies<'_>),
     report: &mut Report<'_>,
 ) -> Option<Quantity> {
     Some(match measured {
@@ -265,7 +265,7 @@ fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usiz
 }
 
 /// The points that count: of a material that a body is made of, of a body, or all.
-fn counted(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<Counted> {
+fn counted(record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> Option<Counted> {
     match (record.gives("material"), record.gives("body")) {
         (true, _) => material(record, made, report).map(Counted::Material),
         (_, true) => body(record, made?.1, report).map(Counted::Body),
@@ -274,7 +274,7 @@ fn counted(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<C
 }
 
 /// Number of the history's material, which a body is made of.
-fn material(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<u16> {
+fn material(record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> Option<u16> {
     let (name, (materials, bodies)) = (record.text("material")?, made?);
     let Some(number) = materials.iter().position(|material| material.name == name) else {
         let near = hint(name, materials.iter().map(|material| &*material.name));
@@ -300,7 +300,7 @@ fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usi
 }
 
 /// The points that count, if they have mass.
-fn weighing(record: &Record, made: Made<'_>, report: &mut Report<'_>) -> Option<Counted> {
+fn weighing(record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> Option<Counted> {
     let (of, (materials, bodies)) = (counted(record, made, report)?, made?);
     let counts = |number: usize, body: &Body| match of {
         Counted::All => true,

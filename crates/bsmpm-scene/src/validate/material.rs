@@ -18,7 +18,7 @@ const MOST: usize = 65_536;
 
 /// What the rest of the case says to materials.
 #[derive(Clone, Copy)]
-pub(super) struct Around<'a> {
+pub(super) struct CaseFacts<'a> {
     pub(super) regime: Option<Regime>,
     pub(super) geometry: Option<Geometry>,
     pub(super) grid: Option<&'a GridSpec>,
@@ -50,7 +50,7 @@ impl Reduction {
 }
 
 /// All materials in the order of the file.
-pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_>) -> Option<Vec<NamedMaterial>> {
+pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report<'_>) -> Option<Vec<NamedMaterial>> {
     let named = root.named("material");
     if root.gives("material") && named.is_empty() {
         root.error("material", "at least one [material.NAME] is needed", report);
@@ -74,7 +74,7 @@ pub(super) fn read_all(root: &Record, around: Around<'_>, report: &mut Report<'_
 fn read(
     number: usize,
     (name, record): &(String, Record),
-    around: Around<'_>,
+    around: CaseFacts<'_>,
     report: &mut Report<'_>,
 ) -> Option<NamedMaterial> {
     let density = density(record, around.regime, report);
@@ -117,7 +117,7 @@ struct Layer {
 }
 
 impl Layer {
-    fn of(number: usize, around: Around<'_>) -> Option<Self> {
+    fn of(number: usize, around: CaseFacts<'_>) -> Option<Self> {
         let (grid, bodies) = (around.grid?, around.bodies?);
         let exchanges = || around.stages.unwrap_or_default().iter().flat_map(|stage| &stage.materials);
         let follows = |own: usize| own == number || exchanges().any(|exchange| *exchange == (own, number));

@@ -230,14 +230,14 @@ fn chosen(word: LinearSolver, reason: String, report: &mut Report<'_>) {
 }
 
 /// What the case says of the linear solver by PETSc's names.
-struct Asked {
+struct PetscNames {
     ksp: Option<Ksp>,
     pc: Option<Pc>,
     factor: Option<Factor>,
 }
 
 fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<Linear> {
-    let asked = Asked {
+    let asked = PetscNames {
         ksp: linear.word_if_given("ksp")?.flatten(),
         pc: linear.word_if_given("pc")?.flatten(),
         factor: linear.word_if_given("factor")?,
@@ -274,7 +274,7 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
 }
 
 /// Notes what the case has left open, and why it is what it is.
-fn explain(linear: &Record, (asked, found): (&Asked, &Linear), size: Size, report: &mut Report<'_>) {
+fn explain(linear: &Record, (asked, found): (&PetscNames, &Linear), size: Size, report: &mut Report<'_>) {
     if asked.pc.is_none() {
         let many =
             || format!("up to {} unknowns, more than {MANY}: a factor costs more than iterations", size.unknowns);

@@ -4,7 +4,7 @@ use super::runs::Runs;
 use crate::picture::axes::label;
 use crate::picture::ticks::{Ticks, range};
 use crate::record::short;
-use crate::report::{Table, or_dash};
+use crate::report::{ReportTable, or_dash};
 
 /// How many rows there are about when nobody says which.
 const ROWS: f64 = 10.0;
@@ -16,7 +16,7 @@ pub(super) fn text(runs: &Runs, at: &[f64]) -> String {
     let at = if at.is_empty() { places(runs) } else { at.to_vec() };
     let heading = label(&runs.x.0, &runs.x.1);
     let heading = if heading.is_empty() { "x".to_owned() } else { heading };
-    let mut table = Table::of(&at);
+    let mut table = ReportTable::of(&at);
     table.right(heading, |&x| written(x));
     for (name, places) in &runs.curves {
         table.right(name, |&x| or_dash(interpolated(places, x).map(written)));

@@ -10,7 +10,7 @@ use bsmpm_scene::{Case, ElementTest};
 use crate::Error;
 
 /// What a test left.
-pub(super) struct Course {
+pub(super) struct StressPath {
     pub name: String,
     /// name of its material
     pub material: String,
@@ -20,13 +20,13 @@ pub(super) struct Course {
     /// names and units of the law's state variables
     state: Vec<(&'static str, &'static str)>,
     /// the start first
-    pub rows: Vec<Row>,
+    pub rows: Vec<PathRow>,
     /// why it ended before its end
     pub failure: Option<String>,
 }
 
 /// The point after a step.
-pub(super) struct Row {
+pub(super) struct PathRow {
     /// from 1; 0 is the start
     stage: usize,
     /// logarithmic, positive in extension, and the shear
@@ -43,7 +43,7 @@ pub(super) struct Row {
     state: Vec<f64>,
 }
 
-impl Row {
+impl PathRow {
     fn of(stage: usize, point: &Element) -> Self {
         let sigma = point.sigma();
         let principal = sigma.full().symmetric_eigenvalues();
@@ -66,7 +66,7 @@ impl Row {
     }
 }
 
-impl Course {
+impl StressPath {
     /// Follows a test of a case.
     ///
     /// # Errors
@@ -85,14 +85,14 @@ impl Course {
             is_sheared: false,
             is_undrained: test.stages.iter().any(|stage| stage.undrained),
             state,
-            rows: vec![Row::of(0, &point)],
+            rows: vec![PathRow::of(0, &point)],
             failure: None,
         };
         for (number, stage) in test.stages.iter().enumerate() {
             let targets = std::array::from_fn(|k| stage.targets[k].unwrap_or_else(|| Target::Stress(point.total(k))));
             course.is_sheared |= targets[3] != Target::Strain(0.0);
             let control = Control { targets, undrained: stage.undrained, steps: stage.steps, duration: stage.duration };
-            let followed = point.follow(&control, |point| course.rows.push(Row::of(number + 1, point)));
+            let followed = point.follow(&control, |point| course.rows.push(PathRow::of(number + 1, point)));
             if let Err(error) = followed {
                 course.failure = Some(format!("stage {}: {error}", number + 1));
                 break;
@@ -102,13 +102,13 @@ impl Course {
     }
 
     /// The row of the largest deviator.
-    pub fn peak(&self) -> &Row {
-        let largest = |a: &&Row, b: &&Row| a.deviator.total_cmp(&b.deviator);
+    pub fn peak(&self) -> &PathRow {
+        let largest = |a: &&PathRow, b: &&PathRow| a.deviator.total_cmp(&b.deviator);
         self.rows.iter().max_by(largest).unwrap_or(&self.rows[0])
     }
 
     /// The row of the end.
-    pub fn last(&self) -> &Row {
+    pub fn last(&self) -> &PathRow {
         &self.rows[self.rows.len() - 1]
     }
 

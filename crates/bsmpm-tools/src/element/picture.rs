@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::course::{Course, Row};
+use super::course::{PathRow, StressPath};
 use crate::Error;
 use crate::picture::axes::{BELOW, ChartAxes, LEFT, title};
 use crate::picture::canvas::Canvas;
@@ -16,23 +16,23 @@ const RIGHT: f64 = 40.0;
 const LINE: f64 = 3.0;
 
 /// A number of a row.
-type Of = fn(&Row) -> f64;
+type Of = fn(&PathRow) -> f64;
 
 /// A quantity along an axis: its name, its unit, and what it is of a row.
-type Quantity = (&'static str, &'static str, Of);
+type AxisQuantity = (&'static str, &'static str, Of);
 
-const COMPRESSION: Quantity = ("Compression along y", "-", |row| -row.strain[1]);
-const SHEAR: Quantity = ("Shear", "-", |row| row.strain[3]);
-const DEVIATOR: Quantity = ("q", "Pa", |row| row.deviator);
-const PRESSURE: Quantity = ("p", "Pa", |row| row.pressure);
-const VOLUME: Quantity = ("Volume strain", "-", Row::volume_strain);
-const PORE: Quantity = ("Pore pressure", "Pa", |row| row.pore_pressure);
+const COMPRESSION: AxisQuantity = ("Compression along y", "-", |row| -row.strain[1]);
+const SHEAR: AxisQuantity = ("Shear", "-", |row| row.strain[3]);
+const DEVIATOR: AxisQuantity = ("q", "Pa", |row| row.deviator);
+const PRESSURE: AxisQuantity = ("p", "Pa", |row| row.pressure);
+const VOLUME: AxisQuantity = ("Volume strain", "-", PathRow::volume_strain);
+const PORE: AxisQuantity = ("Pore pressure", "Pa", |row| row.pore_pressure);
 
 /// Draws the tests along y, and those in shear, in a picture each.
-pub(super) fn draw(case: &str, courses: &[Course], output: &Path) -> Result<Vec<PathBuf>, Error> {
+pub(super) fn draw(case: &str, courses: &[StressPath], output: &Path) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     for (name, is_sheared, along) in [("compression.png", false, COMPRESSION), ("shear.png", true, SHEAR)] {
-        let drawn: Vec<&Course> = courses.iter().filter(|course| course.is_sheared == is_sheared).collect();
+        let drawn: Vec<&StressPath> = courses.iter().filter(|course| course.is_sheared == is_sheared).collect();
         if !drawn.is_empty() {
             let file = output.join(name);
             sheet(case, &drawn, along).save(&file)?;
@@ -42,7 +42,7 @@ pub(super) fn draw(case: &str, courses: &[Course], output: &Path) -> Result<Vec<
     Ok(files)
 }
 
-fn sheet(case: &str, courses: &[&Course], along: Quantity) -> Canvas {
+fn sheet(case: &str, courses: &[&StressPath], along: AxisQuantity) -> Canvas {
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
     let entries: Vec<LegendEntry> = (courses.iter().enumerate())
         .map(|(k, course)| LegendEntry {
@@ -62,7 +62,7 @@ fn sheet(case: &str, courses: &[&Course], along: Quantity) -> Canvas {
     for (number, (x, y)) in panels.into_iter().enumerate() {
         let (column, row) = (number % 2, number / 2);
         let logarithmic = number == 3 && !undrained && decade(courses);
-        let places = |course: &Course| -> Vec<(f64, f64)> {
+        let places = |course: &StressPath| -> Vec<(f64, f64)> {
             let places = course.rows.iter().map(|row| ((x.2)(row), (y.2)(row)));
             places.map(|(x, y)| if logarithmic && x <= 0.0 { (f64::NAN, y) } else { (x, y) }).collect()
         };
@@ -93,7 +93,7 @@ fn spread((low, high): (f64, f64)) -> (f64, f64) {
 }
 
 /// Whether pressures are positive and span so much that their logarithm is the better scale.
-fn decade(courses: &[&Course]) -> bool {
+fn decade(courses: &[&StressPath]) -> bool {
     let pressures = courses.iter().flat_map(|course| course.rows.iter().map(|row| row.pressure));
     range(pressures).is_some_and(|(low, high)| low > 0.0 && high > 10.0 * low)
 }

@@ -8,7 +8,7 @@
 
 use bsmpm_scene::Regime;
 
-use super::work::Work;
+use super::work::Effort;
 
 /// Growth in a halving of the cells beyond which a trend is taken for noise, and what the first steps show.
 const MOST: [f64; 2] = [2.0, 4.0];
@@ -19,7 +19,7 @@ pub(super) struct GrowthLevel {
     /// its cells over the case's
     pub factor: usize,
     /// work over all the case's time
-    pub work: Work,
+    pub work: Effort,
     /// work of the iterations up to the time that the case's own first steps reached
     pub early: f64,
     /// active nodes, mean over all steps over that of the steps up to that time
@@ -28,7 +28,7 @@ pub(super) struct GrowthLevel {
 
 /// The work of a case whose first steps took `early` in their iterations, from one coarse form or more, the finest one
 /// last; none without.
-pub(super) fn extrapolate(levels: &[GrowthLevel], regime: Regime, early: f64) -> Option<Work> {
+pub(super) fn extrapolate(levels: &[GrowthLevel], regime: Regime, early: f64) -> Option<Effort> {
     let finest = levels.last()?;
     let factor = finest.factor as f64;
     let bounded = |growth: f64, most: f64| growth.clamp(1.0, most.powf(factor.log2()));
@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     fn level(factor: usize, evaluations: f64, early: f64) -> GrowthLevel {
-        GrowthLevel { factor, work: Work { steps: 100.0, evaluations, ..Work::default() }, early, spread: 1.0 }
+        GrowthLevel { factor, work: Effort { steps: 100.0, evaluations, ..Effort::default() }, early, spread: 1.0 }
     }
 
     #[test]

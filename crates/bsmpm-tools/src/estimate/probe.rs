@@ -15,7 +15,7 @@ use super::coarse::{self, FACTORS};
 use super::growth::{self, GrowthLevel};
 use super::sizes::{self, Bytes};
 use super::stored::{self, StoredEstimate};
-use super::work::Work;
+use super::work::Effort;
 use crate::Error;
 use crate::launch::{LaunchTask, Outcome, RunState, SolverProgram};
 use crate::slurm::clock;
@@ -59,7 +59,7 @@ struct ProbeRow {
     /// s or pseudo-time  at its end
     time: f64,
     active_nodes: f64,
-    work: Work,
+    work: Effort,
 }
 
 /// What a run left.
@@ -80,8 +80,8 @@ impl ProbeRun {
         timers.filter(|(phase, _)| phases.contains(&phase.as_str())).map(|(_, seconds)| seconds).sum()
     }
 
-    fn work(&self) -> Work {
-        self.rows.iter().map(|row| row.work).fold(Work::default(), |sum, work| sum.with(&work))
+    fn work(&self) -> Effort {
+        self.rows.iter().map(|row| row.work).fold(Effort::default(), |sum, work| sum.with(&work))
     }
 
     /// Bytes of the largest file in one of its folders.
@@ -281,7 +281,7 @@ fn rows(directory: &Path) -> Vec<ProbeRow> {
     let row = |k: usize| {
         let [time, active_nodes, evaluations, products, factorisations, cutbacks] = columns.map(|column| column[k]);
         let newton = (factorisations - 1.0 - cutbacks).max(0.0);
-        ProbeRow { time, active_nodes, work: Work { steps: 1.0, evaluations, products, newton } }
+        ProbeRow { time, active_nodes, work: Effort { steps: 1.0, evaluations, products, newton } }
     };
     (0..length).map(row).collect()
 }

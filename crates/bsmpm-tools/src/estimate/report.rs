@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::against::Actual;
 use super::sizes::{self, Bytes};
 use super::stored::StoredEstimate;
-use super::work::Work;
+use super::work::Effort;
 use crate::report::mebibytes;
 
 /// An estimate.
@@ -34,7 +34,7 @@ pub(super) struct EstimateReport {
     sizes: Bytes,
     /// bytes  of all that is there at the end
     disk: u64,
-    work: Work,
+    work: Effort,
     /// s  of processor time, all ranks together
     cpu_seconds: EstimateBand,
     /// s  by the clock, where nobody else uses the cores

@@ -6,7 +6,7 @@
 use bsmpm_scene::{Case, Regime};
 
 use super::sizes::{self, Bytes};
-use super::work::Work;
+use super::work::Effort;
 
 /// s  of a unit of work, for each point and for each unknown.
 const POINT: f64 = 0.134e-6;
@@ -27,7 +27,7 @@ const BAND: f64 = 4.0;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct StoredEstimate {
     /// of the whole run
-    pub work: Work,
+    pub work: Effort,
     /// s  of a unit of work, all ranks together
     pub unit: f64,
     /// s  before the first step
@@ -63,7 +63,7 @@ pub(super) fn guess(case: &Case, speed: f64) -> StoredEstimate {
     let points = case.points() as f64;
     let [more, dearer] = if case.flow.is_some() { FLOWING } else { [1.0; 2] };
     StoredEstimate {
-        work: Work { steps, evaluations: more * EVALUATIONS[kind] * steps, ..Work::default() },
+        work: Effort { steps, evaluations: more * EVALUATIONS[kind] * steps, ..Effort::default() },
         unit: speed * dearer * (POINT * points + UNKNOWN * sizes.active as f64),
         start: speed * START,
         frame: speed * (FRAME[0] + FRAME[1] * points),

@@ -12,7 +12,7 @@ const NEWTON: f64 = 10.0;
 
 /// What was counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(super) struct Work {
+pub(super) struct Effort {
     /// accepted steps
     pub steps: f64,
     /// evaluations of the out-of-balance force
@@ -23,7 +23,7 @@ pub(super) struct Work {
     pub newton: f64,
 }
 
-impl Work {
+impl Effort {
     /// All of it, in evaluations.
     pub fn units(&self) -> f64 {
         STEP * self.steps + self.iterations()

@@ -31,7 +31,7 @@ pub(super) struct FactorCurve {
 
 /// The greatest factor of stable trials, and the least one of failed trials above it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Band {
+pub(super) struct Bracket {
     pub last_stable: Option<f64>,
     pub first_failed: Option<f64>,
 }
@@ -76,14 +76,14 @@ impl FactorCurve {
     ///
     /// A weaker body in equilibrium shows that a stronger one can stand (lower bound theorem), so the greatest factor
     /// below the level counts, and failures before it do not.
-    pub fn crossing(&self, level: f64) -> Band {
+    pub fn crossing(&self, level: f64) -> Bracket {
         self.band(|state| self.is_beyond(level, state))
     }
 
-    fn band(&self, failed: impl Fn(&CurveState) -> bool) -> Band {
+    fn band(&self, failed: impl Fn(&CurveState) -> bool) -> Bracket {
         let last_stable = self.states.iter().rev().find(|state| !failed(state)).map(|state| state.factor);
         let mut above = self.states.iter().filter(|state| last_stable.is_none_or(|last| state.factor > last));
-        Band { last_stable, first_failed: above.next().map(|state| state.factor) }
+        Bracket { last_stable, first_failed: above.next().map(|state| state.factor) }
     }
 
     /// The trial at a factor.
@@ -129,7 +129,7 @@ impl FactorCurve {
     }
 
     /// The trials before and after the kink.
-    pub fn kinked(&self) -> Band {
+    pub fn kinked(&self) -> Bracket {
         let kink = self.kink();
         self.band(|state| !state.whole || self.is_failed(kink.as_ref(), state))
     }
@@ -194,11 +194,11 @@ mod tests {
     fn all_stable_and_all_failed_have_one_end_only() {
         let level = curve(0.5, 1.5, 0.1, |_| 1.1);
         assert!(level.kink().is_none() && level.reaches(DOUBLED).is_none());
-        assert_eq!(level.kinked(), Band { last_stable: Some(1.5), first_failed: None });
+        assert_eq!(level.kinked(), Bracket { last_stable: Some(1.5), first_failed: None });
         let fallen = curve(0.5, 1.5, 0.1, |_| 30.0);
         assert!(fallen.kink().is_none());
-        assert_eq!(fallen.crossing(DOUBLED), Band { last_stable: None, first_failed: Some(0.5) });
-        assert_eq!(fallen.kinked(), Band { last_stable: None, first_failed: Some(0.5) });
+        assert_eq!(fallen.crossing(DOUBLED), Bracket { last_stable: None, first_failed: Some(0.5) });
+        assert_eq!(fallen.kinked(), Bracket { last_stable: None, first_failed: Some(0.5) });
     }
 
     #[test]

@@ -40,7 +40,7 @@ struct Running {
 }
 
 /// What became of a trial.
-type Made<T> = (f64, Result<T, Error>);
+type TrialResult<T> = (f64, Result<T, Error>);
 
 /// Trials under way, and those there are.
 struct Jobs<'a, S: JobSource> {
@@ -49,10 +49,10 @@ struct Jobs<'a, S: JobSource> {
     source: &'a S,
     running: Vec<Running>,
     /// those for which the search has not asked yet
-    made: Vec<Made<S::Trial>>,
+    made: Vec<TrialResult<S::Trial>>,
     asked: Vec<S::Trial>,
-    sender: Sender<Made<S::Trial>>,
-    receiver: Receiver<Made<S::Trial>>,
+    sender: Sender<TrialResult<S::Trial>>,
+    receiver: Receiver<TrialResult<S::Trial>>,
 }
 
 /// The curve of a search, with up to `most` trials at the same time, and the trials for which it has asked, in that

@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::curve::{Band, DOUBLED, FactorCurve, Kink};
+use super::curve::{Bracket, DOUBLED, FactorCurve, Kink};
 use super::search::{ELASTIC, SearchPlan};
 use super::subject::{Conditions, Subject};
-use super::trial::{End, Trial};
+use super::trial::{End, FosTrial};
 use crate::record::short;
-use crate::report::{Quoted, Table, some, word};
+use crate::report::{Quoted, ReportTable, some, word};
 
 /// A factor of safety by one criterion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -39,7 +39,7 @@ pub(super) struct FosRow {
     /// displacement over the elastic one
     pub growth: f64,
     #[serde(flatten)]
-    pub trial: Trial,
+    pub trial: FosTrial,
 }
 
 /// All of it.
@@ -67,8 +67,8 @@ pub(super) struct FosReport {
 }
 
 impl Finding {
-    fn of(criterion: &'static str, band: Band, estimate: Option<f64>) -> Self {
-        let Band { last_stable, first_failed } = band;
+    fn of(criterion: &'static str, band: Bracket, estimate: Option<f64>) -> Self {
+        let Bracket { last_stable, first_failed } = band;
         Self { criterion, last_stable, first_failed, estimate: estimate.map(short) }
     }
 
@@ -89,18 +89,18 @@ impl FosReport {
         plan: SearchPlan,
         command: &[String],
         curve: &FactorCurve,
-        trials: Vec<Trial>,
+        trials: Vec<FosTrial>,
     ) -> Self {
         let kink = curve.kink();
         let by_kink = Finding::of("kink", curve.kinked(), kink.map(|kink| kink.factor));
         let doubled = Finding::of("doubled", curve.crossing(DOUBLED), curve.reaches(DOUBLED));
-        let verdict = |trial: &Trial| match trial.state() {
+        let verdict = |trial: &FosTrial| match trial.state() {
             state if state.factor == ELASTIC => Verdict::Elastic,
             state if !state.whole => Verdict::NoEquilibrium,
             state if curve.is_failed(kink.as_ref(), &state) => Verdict::Failed,
             _ => Verdict::Stable,
         };
-        let row = |trial: Trial| FosRow { verdict: verdict(&trial), growth: curve.growth(&trial.state()), trial };
+        let row = |trial: FosTrial| FosRow { verdict: verdict(&trial), growth: curve.growth(&trial.state()), trial };
         let mut rows: Vec<FosRow> = trials.into_iter().map(row).collect();
         rows.sort_by(|a, b| a.trial.factor.total_cmp(&b.trial.factor));
         Self {
@@ -162,7 +162,7 @@ impl FosReport {
     }
 
     fn table(&self) -> String {
-        Table::of(&self.trials)
+        ReportTable::of(&self.trials)
             .right("factor", |row| row.trial.factor)
             .right("verdict", |row| word(row.verdict))
             .right(&self.column, |row| format!("{:.4e}", row.trial.displacement))
@@ -178,7 +178,7 @@ impl FosReport {
 
     /// A row a trial.
     pub fn csv(&self) -> String {
-        let made = Table::of(&self.trials)
+        let made = ReportTable::of(&self.trials)
             .column("factor", |row| row.trial.factor)
             .column("verdict", |row| word(row.verdict))
             .column(&self.column, |row| row.trial.displacement)

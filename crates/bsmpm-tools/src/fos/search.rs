@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::curve::{Band, CurveState, DOUBLED, FactorCurve};
+use super::curve::{Bracket, CurveState, DOUBLED, FactorCurve};
 use crate::Error;
 use crate::line::{BENT, FALLEN};
 
@@ -143,7 +143,7 @@ impl Search<'_, '_> {
 
     /// Trials until the place where the displacement grows beyond a level is known to a width.
     fn close_in(&mut self, level: f64, width: f64) -> Result<(), Halt> {
-        while let Band { last_stable: Some(low), first_failed: Some(high) } = self.curve.crossing(level) {
+        while let Bracket { last_stable: Some(low), first_failed: Some(high) } = self.curve.crossing(level) {
             let Some(factor) = self.plan.between(low, high, width).or_else(|| self.doubted(high)) else { break };
             self.ask(factor)?;
         }
@@ -162,7 +162,7 @@ impl Search<'_, '_> {
     /// Trials of growing factors until one is beyond a level.
     fn go_beyond(&mut self, level: f64) -> Result<(), Halt> {
         let mut stride = COARSER * self.plan.width;
-        while let Band { last_stable: Some(top), first_failed: None } = self.curve.crossing(level) {
+        while let Bracket { last_stable: Some(top), first_failed: None } = self.curve.crossing(level) {
             let factor = self.plan.rounded(top + stride);
             if factor <= top || self.curve.crossing(DOUBLED).first_failed.is_none() {
                 break;
@@ -176,7 +176,7 @@ impl Search<'_, '_> {
     /// Trials until the kink lies in a band that is narrow enough.
     fn refine(&mut self) -> Result<(), Halt> {
         for _ in 0..ROUNDS {
-            let Band { last_stable: Some(low), first_failed: Some(high) } = self.curve.kinked() else { break };
+            let Bracket { last_stable: Some(low), first_failed: Some(high) } = self.curve.kinked() else { break };
             let Some(factor) = self.plan.between(low, high, self.plan.width) else { break };
             self.ask(factor)?;
         }
@@ -248,7 +248,7 @@ pub(super) mod tests {
     #[test]
     fn a_body_that_stands_to_the_end_is_not_tried_further() {
         let (curve, tried) = searched(PLAN, hockey(5.0));
-        assert_eq!(curve.unwrap().crossing(DOUBLED), Band { last_stable: Some(3.0), first_failed: None });
+        assert_eq!(curve.unwrap().crossing(DOUBLED), Bracket { last_stable: Some(3.0), first_failed: None });
         assert_eq!(tried, [ELASTIC, 0.5, 0.625, 0.781, 0.977, 1.221, 1.526, 1.907, 2.384, 2.98, 3.0]);
     }
 

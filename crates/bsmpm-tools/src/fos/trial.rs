@@ -28,7 +28,7 @@ pub(super) enum End {
 
 /// What a trial gave.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Trial {
+pub(super) struct FosTrial {
     pub factor: f64,
     #[serde(flatten)]
     pub end: End,
@@ -67,7 +67,7 @@ pub(super) struct StageState {
     elastic: f64,
 }
 
-impl Trial {
+impl FosTrial {
     /// What the judge sees of it.
     pub fn state(&self) -> CurveState {
         CurveState { factor: self.factor, displacement: self.displacement, whole: self.end == End::Equilibrium }
@@ -90,9 +90,9 @@ impl End {
 }
 
 impl JobSource for Trials<'_> {
-    type Trial = Trial;
+    type Trial = FosTrial;
 
-    fn kept(&self, factor: f64) -> Result<Option<Trial>, Error> {
+    fn kept(&self, factor: f64) -> Result<Option<FosTrial>, Error> {
         let (set, text) = (self.subject.overrides(factor), self.subject.text(factor)?);
         let task = self.task(factor, &set, &text);
         if !task.is_there(|manifest| manifest.case.text == text) {
@@ -104,13 +104,13 @@ impl JobSource for Trials<'_> {
     /// # Errors
     /// [`Error::Run`] for one that ended neither in equilibrium nor for the want of it; [`Error::Launch`], and the
     /// errors of files.
-    fn make(&self, factor: f64, stop: &Stop) -> Result<Trial, Error> {
+    fn make(&self, factor: f64, stop: &Stop) -> Result<FosTrial, Error> {
         let (set, text) = (self.subject.overrides(factor), self.subject.text(factor)?);
         let task = self.task(factor, &set, &text);
         self.read(factor, &task.directory, &self.solver.make(&task, stop)?)
     }
 
-    fn state(trial: &Trial) -> CurveState {
+    fn state(trial: &FosTrial) -> CurveState {
         trial.state()
     }
 }
@@ -172,7 +172,7 @@ impl Trials<'_> {
         }
     }
 
-    fn read(&self, factor: f64, directory: &Path, outcome: &Outcome) -> Result<Trial, Error> {
+    fn read(&self, factor: f64, directory: &Path, outcome: &Outcome) -> Result<FosTrial, Error> {
         let code = outcome.code.unwrap_or(u8::MAX);
         let broken = |reason: String| Error::Run {
             what: format!("the trial of the factor {factor}"),
@@ -197,7 +197,7 @@ impl Trials<'_> {
         let RunCost { cpu_seconds, wall_seconds, steps, iterations, cuts, .. } = outcome.cost;
         let before = self.beginning(factor).map_or(RunCost::default(), |state| state.cost);
         let elastic = self.beginning(factor).map_or(0.0, |state| state.elastic);
-        Ok(Trial {
+        Ok(FosTrial {
             factor,
             end,
             displacement: elastic + displacement * self.subject.conditions.stiffness,

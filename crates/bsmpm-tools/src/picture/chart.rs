@@ -15,7 +15,7 @@ const LINE: f64 = 3.5;
 const WIDEST: f64 = 420.0;
 
 /// Places, and how they are drawn and named.
-pub(crate) struct Curve {
+pub(crate) struct ChartCurve {
     pub entry: LegendEntry,
     pub places: Vec<(f64, f64)>,
 }
@@ -36,7 +36,7 @@ pub(crate) struct Chart<'a> {
     pub below: &'a str,
     pub x: Label<'a>,
     pub y: Label<'a>,
-    pub curves: &'a [Curve],
+    pub curves: &'a [ChartCurve],
     pub levels: &'a [ChartLevel],
     pub legend: Vec<&'a LegendEntry>,
 }
@@ -57,7 +57,7 @@ impl Chart<'_> {
         legend::draw(&mut canvas, &self.legend, 40.0, above, room);
         axes.rules(&mut canvas);
         self.draw_levels(&mut canvas, &axes);
-        for Curve { entry, places } in self.curves {
+        for ChartCurve { entry, places } in self.curves {
             for run in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
                 let places: Vec<_> = run.iter().map(|&place| axes.place(place)).collect();
                 entry.mark.draw(&mut canvas, &places, LINE, entry.colour);

@@ -55,7 +55,7 @@ fn spacing(points: &[[f64; 3]]) -> f64 {
 }
 
 /// The dots of a window and a margin about it, with the nearest point of each.
-struct Nearest {
+struct NearestPoints {
     left: i32,
     top: i32,
     width: usize,
@@ -99,7 +99,7 @@ fn covered(axes: &ChartAxes, window: &SplatWindow, (points, sizes): (&[[f64; 3]]
     let reach = |size: &f64| window.reach * dots(size).max(usual);
     let largest = sizes.iter().map(reach).fold(0.0, f64::max);
     let (lower, upper) = (fine(axes.place((x.0, y.1))), fine(axes.place((x.1, y.0))));
-    let mut nearest = Nearest::about(lower, upper, largest.min(MARGIN));
+    let mut nearest = NearestPoints::about(lower, upper, largest.min(MARGIN));
     for (index, (point, size)) in points.iter().zip(sizes).enumerate() {
         let reach = reach(size);
         for place in window.images([point[0], point[1]], reach / dots_per_metre) {
@@ -142,7 +142,7 @@ impl SplatWindow {
     }
 }
 
-impl Nearest {
+impl NearestPoints {
     /// The dots between two corners and `margin` more on each side: a body that goes on beyond the window does not
     /// end there.
     fn about(lower: (i32, i32), upper: (i32, i32), margin: f64) -> Self {

@@ -4,7 +4,7 @@
 use bsmpm_io::table::Columns;
 
 use crate::Error;
-use crate::picture::chart::{Chart, Curve};
+use crate::picture::chart::{Chart, ChartCurve};
 use crate::picture::colour::{self, INK};
 use crate::picture::legend::{LegendEntry, Mark};
 use crate::picture::ticks::range;
@@ -172,7 +172,7 @@ impl Picture {
                 colour: colour::line(index, columns.len()),
                 mark: Mark::Line,
             };
-            curves.push(Curve { entry, places: axis.places(axis.values, column.values) });
+            curves.push(ChartCurve { entry, places: axis.places(axis.values, column.values) });
         }
         // The points of a reference whose columns bear the names of ours.
         let referred = |name: &str| Some((reference?.get(axis.column)?, reference?.get(name)?));
@@ -180,7 +180,7 @@ impl Picture {
             if let Some((across, values)) = referred(column.name) {
                 let name = format!("reference, {}", column.name);
                 let entry = LegendEntry { name, colour: INK, mark: Mark::Points };
-                curves.push(Curve { entry, places: axis.places(across, values) });
+                curves.push(ChartCurve { entry, places: axis.places(across, values) });
             }
         }
         let label = if let [only] = columns { only.label() } else { self.together.to_owned() };

@@ -57,7 +57,7 @@ impl View {
 }
 
 /// The nearest ball of every dot of a sheet.
-struct Nearest {
+struct NearestBalls {
     width: usize,
     /// m, towards the eye, and the point
     dots: Vec<(f32, u32)>,
@@ -65,7 +65,7 @@ struct Nearest {
 
 const NOBODY: (f32, u32) = (f32::NEG_INFINITY, u32::MAX);
 
-impl Nearest {
+impl NearestBalls {
     fn new([width, height]: [usize; 2]) -> Self {
         Self { width, dots: vec![NOBODY; width * height] }
     }
@@ -171,7 +171,7 @@ fn picture(
     }
     let scale = FINE as f64 * (axes.right - axes.left) / (region[0].1 - region[0].0);
     let ((left, top), (right, bottom)) = (fine((axes.left, axes.top)), fine((axes.right, axes.bottom)));
-    let mut nearest = Nearest::new([(right - left).max(1) as usize, (bottom - top).max(1) as usize]);
+    let mut nearest = NearestBalls::new([(right - left).max(1) as usize, (bottom - top).max(1) as usize]);
     let sizes = splat::sizes(frame, &record.manifest.case.geometry);
     let usual = splat::median(&sizes);
     let ground = terrain(record, grid, (usual, frame.time));
@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn near_balls_hide_far_ones_and_slopes_towards_the_light_are_brighter() {
-        let mut nearest = Nearest::new([40, 40]);
+        let mut nearest = NearestBalls::new([40, 40]);
         nearest.add(0, ([20.0, 20.0], 0.0), 10.0, 1.0);
         nearest.add(1, ([20.0, 20.0], -5.0), 12.0, 1.0);
         let at = |column: usize, row: usize| row * 40 + column;

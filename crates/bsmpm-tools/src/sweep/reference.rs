@@ -12,7 +12,7 @@ use super::axes::split;
 use super::quantity::SweepQuantity;
 use super::study::Point;
 use crate::Error;
-use crate::grid_convergence::{Course, Index};
+use crate::grid_convergence::{ConvergenceType, Index};
 
 /// What was asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,11 +188,11 @@ fn limit(h: [f64; 3], f: [f64; 3]) -> (f64, String) {
     let index = Index::of(h, f);
     match (index.extrapolated, index.order, index.course) {
         (Some(limit), Some(order), _) => (limit, format!("order {order:.2}, limit {limit:.6}")),
-        (_, _, Course::Unchanged) => (f[0], format!("the two finest agree: {}", f[0])),
+        (_, _, ConvergenceType::Unchanged) => (f[0], format!("the two finest agree: {}", f[0])),
         (_, _, course) => {
             let word = match course {
-                Course::Oscillatory => "oscillate",
-                Course::OscillatoryDiverging => "oscillate and diverge",
+                ConvergenceType::Oscillatory => "oscillate",
+                ConvergenceType::OscillatoryDiverging => "oscillate and diverge",
                 _ => "do not converge",
             };
             (f[0], format!("{}, {}, {} {word}: no limit; the finest value is the reference", f[2], f[1], f[0]))

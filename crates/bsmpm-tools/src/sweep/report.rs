@@ -8,7 +8,7 @@ use super::quantity::SweepQuantity;
 use super::reference::{FoundReference, ReferenceValues};
 use super::study::Point;
 use crate::launch::{Outcome, RunCost, RunState};
-use crate::report::{Quoted, Table, mebibytes, some, word};
+use crate::report::{Quoted, ReportTable, mebibytes, some, word};
 
 /// A run with what it is worth.
 #[derive(Clone, Debug, Serialize)]
@@ -150,7 +150,7 @@ impl SweepReport {
     }
 
     fn table(&self) -> String {
-        let mut table = Table::of(&self.runs);
+        let mut table = ReportTable::of(&self.runs);
         for (axis, head) in self.heads.iter().enumerate() {
             table.column(head, |row| &row.settings[axis]);
         }
@@ -178,7 +178,7 @@ impl SweepReport {
 
     /// A row a run.
     pub fn csv(&self) -> String {
-        let mut table = Table::of(&self.runs);
+        let mut table = ReportTable::of(&self.runs);
         for (axis, key) in self.axes.iter().enumerate() {
             table.column(key, |row| &row.settings[axis]);
         }

@@ -2,13 +2,13 @@
 
 use super::course::reached;
 use super::matrix::MatrixKink;
-use super::measured::Measured;
+use super::measured::MeasuredNumber;
 use crate::line::{BENT, FALLEN};
 
 /// Where the straight line through the beginning of the branch after the kink meets the elastic one, and in the remark
 /// where twice the elastic displacement is reached. A curve that has not gone that far shows no failure, whatever has
 /// ended it: that a solver gives up is no collapse.
-pub(super) fn failure(kink: &MatrixKink, curve: &[(f64, f64)]) -> Result<Measured, String> {
+pub(super) fn failure(kink: &MatrixKink, curve: &[(f64, f64)]) -> Result<MeasuredNumber, String> {
     let (loads, moved): (Vec<f64>, Vec<f64>) = curve.iter().copied().unzip();
     let end = reached(&loads, kink.elastic).ok_or("it ended within the elastic part")?;
     let (&load, &place) = loads.first().zip(moved.first()).ok_or("no row for a kink")?;
@@ -29,7 +29,7 @@ pub(super) fn failure(kink: &MatrixKink, curve: &[(f64, f64)]) -> Result<Measure
         )?;
     let steep = (to.1 - from.1) / (to.0 - from.0);
     let meet = (from.1 - steep * from.0) / (elastic - steep);
-    Ok(Measured { value: said(meet), remark: Some(doubled) })
+    Ok(MeasuredNumber { value: said(meet), remark: Some(doubled) })
 }
 
 #[cfg(test)]

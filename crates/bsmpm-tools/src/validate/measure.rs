@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use super::course::{Spot, mean, reached, window};
 use super::kink::failure;
 use super::matrix::{MatrixKink, MatrixPlace, MatrixRow, MeasuredOrder, Operation};
-use super::measured::{Lack, Measured};
+use super::measured::{Lack, MeasuredNumber};
 use super::runs::MatrixOutcome;
 use crate::line::FittedLine;
 
 /// The number of a row, or why there is none.
-pub(super) fn value(row: &MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<Measured, Lack> {
+pub(super) fn value(row: &MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<MeasuredNumber, Lack> {
     if let Some(order) = &row.order {
         return Ok(observed_order(order, &values(order, outcomes)?)?);
     }
@@ -31,7 +31,7 @@ pub(super) fn value(row: &MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>)
         (Operation::Deviation, place) => deviation(row, &part(outcomes, run, &values, place.as_ref())?, outcomes)?,
         (operation, place) => over(operation, &part(outcomes, run, &values, place.as_ref())?),
     };
-    Ok(Measured { value: row.scale.unwrap_or(1.0) * value, remark: None })
+    Ok(MeasuredNumber { value: row.scale.unwrap_or(1.0) * value, remark: None })
 }
 
 fn column(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, name: &str) -> Result<Vec<f64>, String> {
@@ -152,7 +152,7 @@ fn values(order: &MeasuredOrder, outcomes: &BTreeMap<String, MatrixOutcome>) -> 
 
 /// Slope of log error over log size: least squares over all sizes; in the remark that of the last two, and the limit
 /// that the last three show.
-fn observed_order(order: &MeasuredOrder, values: &[f64]) -> Result<Measured, String> {
+fn observed_order(order: &MeasuredOrder, values: &[f64]) -> Result<MeasuredNumber, String> {
     let exact = order.exact.ok_or("an order needs `exact`")?;
     let places: Vec<(f64, f64)> =
         order.sizes.iter().zip(values).map(|(size, value)| (size.ln(), (value - exact).abs().ln())).collect();
@@ -161,11 +161,11 @@ fn observed_order(order: &MeasuredOrder, values: &[f64]) -> Result<Measured, Str
     let pair = (before.1 - last.1) / (before.0 - last.0);
     let limit = extrapolated(order, values).map_or_else(|reason| reason, |limit| format!("{:.4}", limit.value));
     let remark = format!("last two sizes: {pair:.2}; limit of the last three: {limit}");
-    Ok(Measured { value: line.slope, remark: Some(remark) })
+    Ok(MeasuredNumber { value: line.slope, remark: Some(remark) })
 }
 
 /// Richardson's limit of the last three sizes, which must shrink by one ratio, with the order that they show.
-fn extrapolated(order: &MeasuredOrder, values: &[f64]) -> Result<Measured, String> {
+fn extrapolated(order: &MeasuredOrder, values: &[f64]) -> Result<MeasuredNumber, String> {
     let ([.., a, b, c], [.., x, y, z]) = (values, &order.sizes[..]) else {
         return Err("an extrapolation needs three sizes".into());
     };
@@ -177,7 +177,7 @@ fn extrapolated(order: &MeasuredOrder, values: &[f64]) -> Result<Measured, Strin
         return Err(format!("no convergence: {a:.4}, {b:.4}, {c:.4}"));
     }
     let order = ratio.ln() / (x / y).ln();
-    Ok(Measured {
+    Ok(MeasuredNumber {
         value: c - (b - c) / (ratio - 1.0),
         remark: Some(format!("from {a:.4}, {b:.4}, {c:.4}: order {order:.2}")),
     })

@@ -2,7 +2,7 @@
 
 /// A number, and what its reader should know.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Measured {
+pub(super) struct MeasuredNumber {
     pub value: f64,
     pub remark: Option<String>,
 }

@@ -1,7 +1,7 @@
 //! The table: for the screen study by study, as Markdown and as CSV whole.
 
 use crate::launch::RunCost;
-use crate::report::{Quoted, Table, number, some};
+use crate::report::{Quoted, ReportTable, number, some};
 
 /// How a row stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl TableRow {
     }
 }
 
-fn add_columns(table: &mut Table<TableRow>) {
+fn add_columns(table: &mut ReportTable<TableRow>) {
     table
         .column("quantity", |row| &row.quantity)
         .right("reference", |row| some(row.reference.map(number)))
@@ -81,7 +81,7 @@ fn add_columns(table: &mut Table<TableRow>) {
 
 /// A study for the screen, in columns; sources and counts are in the files.
 pub(super) fn text(title: &str, rows: &[TableRow]) -> String {
-    let mut table = Table::of(rows);
+    let mut table = ReportTable::of(rows);
     add_columns(&mut table);
     table.only(&["quantity", "reference", "ours", "deviation", "allowed", "verdict", "s", "remark"]);
     format!("\n{title}\n{}", table.text("  ")).trim_end().to_owned()
@@ -90,7 +90,7 @@ pub(super) fn text(title: &str, rows: &[TableRow]) -> String {
 /// All rows, a table a study.
 pub(super) fn markdown(rows: &[TableRow]) -> String {
     let of_study = |part: &[TableRow]| {
-        let mut table = Table::of(part);
+        let mut table = ReportTable::of(part);
         add_columns(&mut table);
         format!("\n## {}\n\n{}", part[0].study, table.markdown())
     };
@@ -99,7 +99,7 @@ pub(super) fn markdown(rows: &[TableRow]) -> String {
 
 /// All rows for programs.
 pub(super) fn csv(rows: &[TableRow]) -> String {
-    let mut table = Table::of(rows);
+    let mut table = ReportTable::of(rows);
     add_columns(table.column("study", |row| &row.study));
     table.csv(Quoted::All)
 }

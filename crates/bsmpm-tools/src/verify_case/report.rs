@@ -6,10 +6,10 @@ use serde::Serialize;
 use super::grids::Grids;
 use super::{TimeStep, VerifyArguments};
 use crate::Error;
-use crate::grid_convergence::{Course, Index};
+use crate::grid_convergence::{ConvergenceType, Index};
 use crate::launch::{Outcome, RunCost};
 use crate::record::short;
-use crate::report::{Quoted, Table, or_dash, some, word};
+use crate::report::{Quoted, ReportTable, or_dash, some, word};
 use crate::sweep::QuantityPart;
 
 /// Orders below it converge too slowly for the next term of the series to be small.
@@ -93,7 +93,7 @@ impl VerifyReport {
     pub fn text(&self) -> String {
         let [h1, h2, h3] = self.cells.map(short);
         let digits = |value: Option<f64>, digits: usize| or_dash(value.map(|value| format!("{value:.digits$}")));
-        let mut table = Table::of(&self.rows);
+        let mut table = ReportTable::of(&self.rows);
         table
             .column("quantity", |row| &row.quantity)
             .right("time", VerifyRow::time)
@@ -122,7 +122,7 @@ impl VerifyReport {
 
     /// A row a quantity and time.
     pub fn csv(&self) -> String {
-        let mut table = Table::of(&self.rows);
+        let mut table = ReportTable::of(&self.rows);
         table.column("quantity", |row| &row.quantity).column("unit", |row| &row.unit).column("time", VerifyRow::time);
         for (heading, cell) in ["h_fine", "h_middle", "h_coarse"].into_iter().zip(self.cells) {
             table.column(heading, |_| cell);
@@ -153,23 +153,27 @@ fn verdict(index: &Index, degree: usize) -> String {
     let highest = 2.0 * (degree + 1) as f64;
     let off = index.ratio.is_some_and(|ratio| (ratio - 1.0).abs() > NEAR);
     match (index.course, index.order) {
-        (Course::Unchanged, _) => "does not depend on the grid".to_owned(),
-        (Course::Diverging, _) => "DIVERGES: the finer the grids, the larger the differences; no band".to_owned(),
-        (Course::OscillatoryDiverging, _) => "OSCILLATES AND DIVERGES: no band".to_owned(),
-        (Course::Oscillatory, _) => "oscillates: the band is a guess, and there is no extrapolated value".to_owned(),
-        (Course::Monotone, Some(order)) if order < SLOWEST => {
+        (ConvergenceType::Unchanged, _) => "does not depend on the grid".to_owned(),
+        (ConvergenceType::Diverging, _) => {
+            "DIVERGES: the finer the grids, the larger the differences; no band".to_owned()
+        }
+        (ConvergenceType::OscillatoryDiverging, _) => "OSCILLATES AND DIVERGES: no band".to_owned(),
+        (ConvergenceType::Oscillatory, _) => {
+            "oscillates: the band is a guess, and there is no extrapolated value".to_owned()
+        }
+        (ConvergenceType::Monotone, Some(order)) if order < SLOWEST => {
             format!("not asymptotic: order {order:.2} is below {SLOWEST}; the extrapolated value may be far off")
         }
-        (Course::Monotone, Some(order)) if order > highest => {
+        (ConvergenceType::Monotone, Some(order)) if order > highest => {
             format!(
                 "not asymptotic: order {order:.2} is above any that the method has ({highest}); the band is too narrow"
             )
         }
-        (Course::Monotone, Some(_)) if off => {
+        (ConvergenceType::Monotone, Some(_)) if off => {
             "not asymptotic: the bands of both pairs of grids do not agree (GCI ratio)".to_owned()
         }
-        (Course::Monotone, Some(_)) => "converges".to_owned(),
-        (Course::Monotone, None) => "differences too uneven for an order; no band".to_owned(),
+        (ConvergenceType::Monotone, Some(_)) => "converges".to_owned(),
+        (ConvergenceType::Monotone, None) => "differences too uneven for an order; no band".to_owned(),
     }
 }
 

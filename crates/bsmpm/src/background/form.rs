@@ -19,7 +19,7 @@ pub(super) enum Form {
 #[derive(Clone, Debug)]
 pub(super) enum CellForms {
     /// one for all cells whose breakpoints lie alike
-    Blocks(Vec<Block>),
+    Blocks(Vec<CellBlock>),
     /// of each cell, of the strain in space
     ByAxes(TensorForms),
 }
@@ -60,14 +60,14 @@ impl CellForms {
 
 /// The block of a cell, m^(D-2), row-major and symmetric to the last bit.
 #[derive(Clone, Debug)]
-pub(super) enum Block {
+pub(super) enum CellBlock {
     /// (q+1)^D square, equal for every component, which do not couple
     Scalar(Vec<f64>),
     /// D (q+1)^D square, and behind it seven zeros, so that vectors of eight may reach beyond the end
     Coupled(Vec<f64>),
 }
 
-impl Block {
+impl CellBlock {
     /// Adds `factor` times it to a patch's block of D unknowns a node.
     fn add_to<const D: usize>(&self, factor: f64, block: &mut [f64]) {
         match self {
@@ -94,20 +94,20 @@ impl Block {
                 }
             }
             Self::Coupled(form) => {
-                lanes::run(Product { form, u: u.as_flattened(), product: product.as_flattened_mut() });
+                lanes::run(BlockProduct { form, u: u.as_flattened(), product: product.as_flattened_mut() });
             }
         }
     }
 }
 
 /// A symmetric block times what the nodes have: eight rows at a time, of which each entry of `u` has its column's.
-struct Product<'a> {
+struct BlockProduct<'a> {
     form: &'a [f64],
     u: &'a [f64],
     product: &'a mut [f64],
 }
 
-impl InLanes for Product<'_> {
+impl InLanes for BlockProduct<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -155,8 +155,10 @@ impl<'a, const D: usize> Forms<'a, D> {
         };
         *self.numbers.entry(cell).or_insert_with(|| {
             blocks.push(match self.form {
-                Form::Strain => Block::Coupled(self.integrals.strain(&cell)),
-                Form::Curvature => Block::Scalar(self.integrals.curvature(&cell, self.grid.cell_box(&cell).1.into())),
+                Form::Strain => CellBlock::Coupled(self.integrals.strain(&cell)),
+                Form::Curvature => {
+                    CellBlock::Scalar(self.integrals.curvature(&cell, self.grid.cell_box(&cell).1.into()))
+                }
             });
             blocks.len() - 1
         })

@@ -14,7 +14,7 @@ const D: usize = 3;
 const MOST: [usize; 2] = [4, 64];
 /// Numbers of eight cells by node, and by pair of functions along an axis.
 type Eights<S> = [Lanes<S>; MOST[1]];
-type Matrix<S> = [Lanes<S>; MOST[0] * MOST[0]];
+type AxisMatrix<S> = [Lanes<S>; MOST[0] * MOST[0]];
 
 /// Kinds of integrals along an axis: of the functions, of their slopes, of the row's slope, of the column's.
 const KINDS: [usize; 4] = [0, 1, MIXED[0], MIXED[1]];
@@ -38,7 +38,7 @@ fn half_unless(whole: bool) -> f64 {
 
 /// The matrix of each axis, by its kind.
 #[inline(always)]
-fn chosen<S: Simd>(matrices: &[[Matrix<S>; KINDS.len()]; D], kinds: [usize; D]) -> [&Matrix<S>; D] {
+fn chosen<S: Simd>(matrices: &[[AxisMatrix<S>; KINDS.len()]; D], kinds: [usize; D]) -> [&AxisMatrix<S>; D] {
     [0, 1, 2].map(|axis| &matrices[axis][kinds[axis]])
 }
 
@@ -85,19 +85,19 @@ impl TensorForms {
     pub(super) fn multiply(&self, numbers: impl Iterator<Item = usize>, u: &[f64], products: &mut [f64]) {
         let cells: Vec<[usize; D]> = numbers.map(|number| self.cells[number]).collect();
         with_width!(self.integrals.width, W => {
-            lanes::run(Product::<W> { integrals: &self.integrals, cells: &cells, u, products });
+            lanes::run(TensorProduct::<W> { integrals: &self.integrals, cells: &cells, u, products });
         });
     }
 }
 
-struct Product<'a, const W: usize> {
+struct TensorProduct<'a, const W: usize> {
     integrals: &'a Integrals,
     cells: &'a [[usize; D]],
     u: &'a [f64],
     products: &'a mut [f64],
 }
 
-impl<const W: usize> InLanes for Product<'_, W> {
+impl<const W: usize> InLanes for TensorProduct<'_, W> {
     type Output = ();
 
     /// `f_i = sum_j int eps(N e_i) : eps(u_j e_j)`: of j = i the derivatives along all axes, those across it by half;
@@ -141,7 +141,7 @@ impl<const W: usize> InLanes for Product<'_, W> {
 /// Adds `factor` times the tensor product of three matrices by `u`; what is in `one` and `two` does not matter.
 #[inline(always)]
 fn add<const W: usize, S: Simd>(
-    matrices: [&Matrix<S>; D],
+    matrices: [&AxisMatrix<S>; D],
     factor: f64,
     u: &Eights<S>,
     f: &mut Eights<S>,
@@ -157,7 +157,7 @@ fn add<const W: usize, S: Simd>(
 
 /// A matrix by what the nodes that lie so many numbers apart have.
 #[inline(always)]
-fn along<const W: usize, S: Simd>(matrix: &Matrix<S>, apart: usize, u: &Eights<S>, product: &mut Eights<S>) {
+fn along<const W: usize, S: Simd>(matrix: &AxisMatrix<S>, apart: usize, u: &Eights<S>, product: &mut Eights<S>) {
     for line in 0..W * W {
         let first = line / apart * apart * W + line % apart;
         for a in 0..W {

@@ -28,7 +28,7 @@ pub struct Anchored<'a, const D: usize> {
 }
 
 /// A surface point's place at the start, m, and whether water crosses there.
-type Start<const D: usize> = (Vector<D>, bool);
+type StartPlace<const D: usize> = (Vector<D>, bool);
 
 /// All that has points on surfaces of bodies.
 #[derive(Clone)]
@@ -43,12 +43,12 @@ pub struct Surfaces<'a, const D: usize> {
 
 impl<const D: usize> Surfaces<'_, D> {
     /// All surface points of water at the start.
-    fn starts_of_water(&self) -> impl Iterator<Item = Start<D>> {
+    fn starts_of_water(&self) -> impl Iterator<Item = StartPlace<D>> {
         self.water.iter().copied().flatten().map(|point| (point.x, true))
     }
 
     /// All those of strips, then those of loads.
-    fn starts_of_boundary(&self) -> impl Iterator<Item = Start<D>> {
+    fn starts_of_boundary(&self) -> impl Iterator<Item = StartPlace<D>> {
         starts(self.boundary).into_iter().map(|x| (x, false))
     }
 }
@@ -81,7 +81,7 @@ impl Anchors {
     ) -> Self {
         let boundary = surfaces.boundary;
         let found = [!(carried.strips.is_empty() && carried.loads.is_empty()), !carried.water.is_empty()];
-        let mut starts: Vec<Start<D>> = surfaces.starts_of_boundary().filter(|_| !found[0]).collect();
+        let mut starts: Vec<StartPlace<D>> = surfaces.starts_of_boundary().filter(|_| !found[0]).collect();
         starts.extend(surfaces.starts_of_water().filter(|_| !found[1]));
         if starts.is_empty() {
             return carried.clone();
@@ -111,7 +111,8 @@ impl Anchors {
         let mut anchors = self.clone();
         let held = anchors.strips.iter_mut().chain(&mut anchors.loads).flatten().zip(surfaces.starts_of_boundary());
         let wet = anchors.water.iter_mut().flatten().zip(surfaces.starts_of_water());
-        let (mut lost, places): (Vec<&mut u64>, Vec<Start<D>>) = held.chain(wet).filter(|(id, _)| gone(**id)).unzip();
+        let (mut lost, places): (Vec<&mut u64>, Vec<StartPlace<D>>) =
+            held.chain(wet).filter(|(id, _)| gone(**id)).unzip();
         if !lost.is_empty() {
             lost.iter_mut().zip(nearest((&places, &surfaces.dry), points, halo)).for_each(|(id, found)| **id = found);
         }
@@ -133,7 +134,7 @@ impl Anchors {
         let water = surfaces.water.iter().map(|points| (*points, true)).zip(&idle.water).take(anchors.water.len());
         let lost = loads.chain(water).filter(|(_, idle)| **idle);
         let places = lost.flat_map(|((points, wet), _)| points.iter().map(move |point| (point.x, wet)));
-        let places: Vec<Start<D>> = places.collect();
+        let places: Vec<StartPlace<D>> = places.collect();
         if !places.is_empty() {
             let all = anchors.loads.iter_mut().zip(&idle.loads).chain(anchors.water.iter_mut().zip(&idle.water));
             let renewed = all.filter(|(_, idle)| **idle).flat_map(|(ids, _)| ids);
@@ -234,7 +235,11 @@ fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
 
 /// Ids of the points that were nearest to places at the start; of equally near ones the smallest. Where water crosses,
 /// of those whose material is not `dry`.
-fn nearest<const D: usize>((at, dry): (&[Start<D>], &[bool]), points: Anchored<'_, D>, halo: &dyn Halo) -> Vec<u64> {
+fn nearest<const D: usize>(
+    (at, dry): (&[StartPlace<D>], &[bool]),
+    points: Anchored<'_, D>,
+    halo: &dyn Halo,
+) -> Vec<u64> {
     let start = |p: usize| points.x[p] - points.u[p];
     let mut least = vec![f64::INFINITY; at.len()];
     let mut ids = vec![u64::MAX; at.len()];

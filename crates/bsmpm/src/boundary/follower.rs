@@ -23,7 +23,7 @@ const SAME: f64 = 1e-6;
 
 /// Corners of the pieces of all loads that follow the surface.
 #[derive(Clone, Debug, Default)]
-struct Corners<const D: usize> {
+struct LoadCorners<const D: usize> {
     /// per piece, in the order of loads and points
     of_piece: Vec<[usize; CORNERS]>,
     /// m  at the start
@@ -32,7 +32,7 @@ struct Corners<const D: usize> {
     pieces: Vec<usize>,
 }
 
-impl<const D: usize> Corners<D> {
+impl<const D: usize> LoadCorners<D> {
     fn of(loads: &[Load<D>]) -> Self {
         let mut corners = Self::default();
         for load in loads.iter().filter(|load| load.follows) {
@@ -128,7 +128,7 @@ struct Carrier<const D: usize> {
 /// Follower loads of a step, attached to the nodes.
 #[derive(Clone, Debug, Default)]
 pub struct FollowerLoads<const D: usize> {
-    corners: Corners<D>,
+    corners: LoadCorners<D>,
     carriers: Vec<Carrier<D>>,
     /// load, point of it, m^(D-1) times the share that acts at the step's end, and where its force goes
     pushed: Vec<(usize, usize, f64, Attachment)>,
@@ -145,7 +145,7 @@ impl<const D: usize> FollowerLoads<D> {
         if !loads.iter().any(|load| load.follows) {
             return Self::default();
         }
-        Self { corners: Corners::of(loads), carriers: carriers(loads, (grid, anchors), points), pushed }
+        Self { corners: LoadCorners::of(loads), carriers: carriers(loads, (grid, anchors), points), pushed }
     }
 
     /// Whether no load follows the surface.

@@ -18,8 +18,8 @@ use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
 use crate::schedule::between;
 use crate::tensor::Vector;
-use grip::Grip;
-use point::{LENGTHS, StripPoint, Sums, contact_report};
+use grip::ContactState;
+use point::{LENGTHS, StripPoint, StripSums, contact_report};
 
 /// A displacement as a function of time, linear between its rows: a cut step follows the same path.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,7 +138,7 @@ impl<const D: usize> StripAttachments<D> {
             let (place, motion) = (strip.path.at(t), strip.path.at(t + dt) - strip.path.at(t));
             for (index, point) in strip.points.iter().enumerate() {
                 let carried = surface.traction[number][index];
-                let grip = strip.contact.map(|contact| Grip::of(contact, &carried));
+                let grip = strip.contact.map(|contact| ContactState::of(contact, &carried));
                 // The material across a gap is what the gap is to.
                 let off = strip
                     .contact
@@ -263,7 +263,7 @@ impl<const D: usize> StripAttachments<D> {
         // Which points of strips that lift are held by some rank.
         let lifting = |(strip, list): (&Strip<D>, Vec<Vector<D>>)| if strip.lifts() { list } else { Vec::new() };
         let mut there: Vec<Vec<Vector<D>>> = strips.iter().zip(at_rest()).map(lifting).collect();
-        let mut sums: Vec<Sums> = strips.iter().map(|_| Sums::default()).collect();
+        let mut sums: Vec<StripSums> = strips.iter().map(|_| StripSums::default()).collect();
         let mut longest = vec![0.0; LENGTHS * strips.len()];
         for (number, _) in strips.iter().enumerate().filter(|(_, strip)| strip.contact.is_some()) {
             longest[LENGTHS * number + 3] = f64::NEG_INFINITY;

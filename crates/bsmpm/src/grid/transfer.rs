@@ -15,7 +15,7 @@ use crate::lanes;
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
 use columns::{apart, joined, nothing, share, unfilled};
-use patch::{Divergence, Gradients, Sums};
+use patch::{Divergence, Gradients, PatchSums};
 use std::marker::PhantomData;
 use std::ops::Range;
 
@@ -46,7 +46,7 @@ pub fn to_nodes_grouped<const D: usize, const C: usize>(
         move |points: Range<usize>, block: &mut PatchBlock<C>| {
             values.clear();
             values.extend(points.clone().map(value));
-            lanes::run(Sums::<D, C, W> { rows, stride, points, values: &values, block });
+            lanes::run(PatchSums::<D, C, W> { rows, stride, points, values: &values, block });
         }
     }))
 }

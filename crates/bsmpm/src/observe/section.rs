@@ -49,7 +49,7 @@ pub fn section_forces<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> SectionForces {
     let mut sums = [const { Exact::ZERO }; 6];
-    if let Some(cut) = Cut::of(grid, section).and_then(|cut| cut.inside::<K>(grid, points, halo)) {
+    if let Some(cut) = SectionPlane::of(grid, section).and_then(|cut| cut.inside::<K>(grid, points, halo)) {
         for p in 0..points.len() {
             let volume = points.volume[p] * points.F.at(p).determinant();
             let share = cut.share(&points.x[p], volume / K::weight(&points.x[p]));
@@ -68,7 +68,7 @@ pub fn section_forces<K: Kinematics<D>, const D: usize>(
 }
 
 /// A section that cuts the grid.
-struct Cut<const D: usize> {
+struct SectionPlane<const D: usize> {
     middle: Vector<D>,
     along: [Vector<3>; 2], // unit vectors t1 and t2
     across: Vector<3>,     // unit vector n
@@ -93,7 +93,7 @@ impl Side {
     }
 }
 
-impl<const D: usize> Cut<D> {
+impl<const D: usize> SectionPlane<D> {
     /// `None` of a section without an area, or whose middle has left the grid; its ramp is in the section.
     fn of(grid: &Grid<D>, section: &Section<D>) -> Option<Self> {
         let middles = section.lines.iter().map(|[from, to]| (from + to) / 2.0);

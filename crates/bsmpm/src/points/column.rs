@@ -113,7 +113,7 @@ impl Column for Rows {
     }
 }
 
-impl<T: Row> Column for Vec<T> {
+impl<T: MessageRow> Column for Vec<T> {
     fn number(&self) -> Number {
         T::NUMBER
     }
@@ -148,7 +148,7 @@ impl<T: Row> Column for Vec<T> {
     }
 }
 
-impl<const D: usize, T: Row + Components> Column for Packed<D, T> {
+impl<const D: usize, T: MessageRow + Components> Column for Packed<D, T> {
     fn number(&self) -> Number {
         T::NUMBER
     }
@@ -184,7 +184,7 @@ impl<const D: usize, T: Row + Components> Column for Packed<D, T> {
 }
 
 /// A row that travels between ranks bit by bit.
-trait Row: Copy {
+trait MessageRow: Copy {
     const NUMBER: Number;
     const WIDTH: usize;
     const BYTES: usize;
@@ -195,7 +195,7 @@ trait Row: Copy {
 
 macro_rules! number_rows {
     ($($number:ty, $kind:ident);*) => {$(
-        impl Row for $number {
+        impl MessageRow for $number {
             const NUMBER: Number = Number::$kind;
             const WIDTH: usize = 1;
             const BYTES: usize = size_of::<$number>();
@@ -215,7 +215,7 @@ macro_rules! number_rows {
 }
 number_rows!(u16, U16; u64, U64; f64, F64);
 
-impl<const R: usize, const C: usize> Row for SMatrix<f64, R, C> {
+impl<const R: usize, const C: usize> MessageRow for SMatrix<f64, R, C> {
     const NUMBER: Number = Number::F64;
     const WIDTH: usize = R * C;
     const BYTES: usize = 8 * R * C;
@@ -230,7 +230,7 @@ impl<const R: usize, const C: usize> Row for SMatrix<f64, R, C> {
     }
 }
 
-impl Row for Symmetric {
+impl MessageRow for Symmetric {
     const NUMBER: Number = Number::F64;
     const WIDTH: usize = 6;
     const BYTES: usize = 48;

@@ -21,13 +21,13 @@ pub enum Raised {
 pub struct Coupling<'a, const D: usize> {
     grid: &'a Grid<D>,
     lower: &'a Shape<D>,
-    cells: Level,
-    pairs: Option<Level>, // where functions are merged
+    cells: FunctionSums,
+    pairs: Option<FunctionSums>, // where functions are merged
     raised: Raised,
 }
 
 /// Functions on cells, or on pairs of cells.
-struct Level {
+struct FunctionSums {
     /// per group and function its head, W and kappa_h W, and g of the nodes that its cells touch; f of them, if it is
     /// its own
     sums: Vec<Contributions>,
@@ -90,7 +90,8 @@ impl<'a, const D: usize> Coupling<'a, D> {
         let (grid, groups) = (&model.grid, model.groups.count());
         let lower = nodes.lowered().filter(|_| grid.beyond() + 1 >= grid.order())?;
         let q = grid.order();
-        let level = |side| Level::of((grid, groups), side, HEAD + raised.vectors() * usize::pow(side, D as u32) * D);
+        let level =
+            |side| FunctionSums::of((grid, groups), side, HEAD + raised.vectors() * usize::pow(side, D as u32) * D);
         // A function spans q cells or q pairs of them, and these touch q nodes more.
         Some(Self { grid, lower, cells: level(2 * q), pairs: lower.merger().map(|_| level(3 * q)), raised })
     }
@@ -197,7 +198,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
     }
 }
 
-impl Level {
+impl FunctionSums {
     fn of<const D: usize>((grid, groups): (&Grid<D>, usize), side: usize, width: usize) -> Self {
         let none = || Contributions::none(grid, width, Vec::new());
         let along = |node: usize, axis: usize| digit::<D>(node, axis, grid.order() + 1);

@@ -37,12 +37,12 @@ pub struct DrainReport {
 pub struct Drainage {
     offsets: Vec<usize>,
     of: [usize; 2], // drains, inflows
-    outlets: Vec<Outlet>,
+    outlets: Vec<Sink>,
 }
 
-/// A surface point that water goes through.
+/// A surface point that water goes through: a sink, or a source.
 #[derive(Clone, Debug)]
-struct Outlet {
+struct Sink {
     surface: usize, // of the drains, then of the inflows
     attachment: Attachment,
     conductance: f64, // m3/Pa  in the step
@@ -51,7 +51,7 @@ struct Outlet {
     one_way: bool,    // lets water out only, where the pressure is above the given one
 }
 
-impl Outlet {
+impl Sink {
     /// m3  out of the ground in the step, under the excess pressures `p`, Pa, nodal.
     fn out(&self, offsets: &[usize], p: &[f64]) -> f64 {
         if !self.is_open(offsets, p) {
@@ -90,7 +90,7 @@ impl Drainage {
         let mut places = places(flow, points, &anchors, halo).into_iter();
         let mut outlets = Vec::new();
         for ((surface, (starts, _)), acts) in flow.surfaces().enumerate().zip(flow.acting()) {
-            let here: Vec<Place<D>> = places.by_ref().take(starts.len()).collect();
+            let here: Vec<SurfacePlace<D>> = places.by_ref().take(starts.len()).collect();
             if !acts {
                 continue;
             }
@@ -102,19 +102,19 @@ impl Drainage {
                 let attachment = Attachment::lowered_at(grid, &offsets, &counts, &place.x);
                 let Some(attachment) = attachment else { continue };
                 let through = dt * area * place.normal.norm();
-                let none = Outlet { surface, attachment, conductance: 0.0, given: 0.0, inflow: 0.0, one_way: false };
+                let none = Sink { surface, attachment, conductance: 0.0, given: 0.0, inflow: 0.0, one_way: false };
                 let conductance = through * CONDUCTANCE * place.leads(grid) / water.unit_weight;
                 let dry = Given::Seepage.excess(water.unit_weight, &place.x, t + dt, &still);
                 outlets.push(match flow.drains.get(surface) {
                     Some(drain) => {
                         let given = drain.given.excess(water.unit_weight, &place.x, t + dt, &still);
                         let one_way = drain.given == Given::Seepage && still(&place.x) <= 0.0;
-                        Outlet { conductance, given, one_way, ..none }
+                        Sink { conductance, given, one_way, ..none }
                     }
                     None => {
                         let inflow = &flow.inflows[surface - flow.drains.len()];
-                        let rain = Outlet { inflow: through * inflow.rate.at(t + dt), ..none };
-                        if inflow.runs_off { Outlet { conductance, given: dry, one_way: true, ..rain } } else { rain }
+                        let rain = Sink { inflow: through * inflow.rate.at(t + dt), ..none };
+                        if inflow.runs_off { Sink { conductance, given: dry, one_way: true, ..rain } } else { rain }
                     }
                 });
             }
@@ -148,7 +148,7 @@ impl Drainage {
     /// Adds the derivative of that to the matrix of the pressures, m3/Pa: of drains that let water out only where they
     /// are open under `p`.
     pub fn assemble(&self, p: &[f64], solver: &mut dyn LinearSolver) {
-        let acts = |outlet: &&Outlet| outlet.conductance > 0.0 && outlet.is_open(&self.offsets, p);
+        let acts = |outlet: &&Sink| outlet.conductance > 0.0 && outlet.is_open(&self.offsets, p);
         for outlet in self.outlets.iter().filter(acts) {
             let N = outlet.attachment.N();
             let block: Vec<f64> =
@@ -159,7 +159,7 @@ impl Drainage {
 
     /// J  what the water that leaves under the excess pressures `p`, Pa, takes along, on this rank.
     pub fn work(&self, p: &[f64]) -> Exact {
-        let of = |outlet: &Outlet| outlet.attachment.value(&self.offsets, p) * outlet.out(&self.offsets, p);
+        let of = |outlet: &Sink| outlet.attachment.value(&self.offsets, p) * outlet.out(&self.offsets, p);
         self.outlets.iter().map(of).collect()
     }
 
@@ -182,14 +182,14 @@ impl Drainage {
 }
 
 /// What a surface point is at.
-struct Place<const D: usize> {
+struct SurfacePlace<const D: usize> {
     x: Vector<D>,            // m
     normal: Vector<D>,       // of the length that the area is now over that of the start
     permeability: Vector<D>, // m/s  along the axes
     drained: bool,           // whether the material lets water through at all
 }
 
-impl<const D: usize> Place<D> {
+impl<const D: usize> SurfacePlace<D> {
     /// 1/s  permeability across the surface over the edges of the cell that it is in.
     fn leads(&self, grid: &Grid<D>) -> f64 {
         let edges = grid.locate(&self.x).map(|cell| grid.cell_box(&cell).1);
@@ -200,7 +200,12 @@ impl<const D: usize> Place<D> {
 }
 
 /// Those of all surface points, now. One reduction.
-fn places<const D: usize>(flow: &Flow<D>, points: &Points<D>, anchors: &[Vec<u64>], halo: &dyn Halo) -> Vec<Place<D>> {
+fn places<const D: usize>(
+    flow: &Flow<D>,
+    points: &Points<D>,
+    anchors: &[Vec<u64>],
+    halo: &dyn Halo,
+) -> Vec<SurfacePlace<D>> {
     let starts: Vec<(&SurfacePoint<D>, &Vector<D>)> =
         flow.surfaces().flat_map(|(points, normals)| points.iter().zip(normals)).collect();
     let (width, anchored) = (3 * D + 1, points.anchored());
@@ -216,7 +221,7 @@ fn places<const D: usize>(flow: &Flow<D>, points: &Points<D>, anchors: &[Vec<u64
     halo.reduce(&mut numbers);
     let place = |numbers: &[f64]| {
         let vector = |k: usize| Vector::from_column_slice(&numbers[k * D..(k + 1) * D]);
-        Place { x: vector(0), normal: vector(1), permeability: vector(2), drained: numbers[3 * D] > 0.0 }
+        SurfacePlace { x: vector(0), normal: vector(1), permeability: vector(2), drained: numbers[3 * D] > 0.0 }
     };
     numbers.chunks_exact(width).map(place).collect()
 }

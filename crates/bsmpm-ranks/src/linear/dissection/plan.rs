@@ -14,9 +14,9 @@ const LEAF: usize = 64;
 /// Elimination number of a component that is no unknown.
 pub const NONE: u32 = u32::MAX;
 
-/// Unknowns that are eliminated together.
+/// Unknowns that are eliminated together, a part of the order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct Supernode {
     /// elimination numbers
     pub own: Range<usize>,
     /// elimination numbers of what they and all that was eliminated below them couple with, ascending
@@ -27,7 +27,7 @@ pub struct Part {
     pub start: usize,
 }
 
-impl Part {
+impl Supernode {
     /// Order of its front.
     pub fn rows(&self) -> usize {
         self.own.len() + self.rim.len()
@@ -52,7 +52,7 @@ pub struct Plan {
     /// elimination number by component, or [`NONE`]
     pub number: Vec<u32>,
     /// parts
-    pub parts: Vec<Part>,
+    pub parts: Vec<Supernode>,
 }
 
 /// The box of nodes that is cut up.
@@ -86,9 +86,9 @@ impl Plan {
         cutter.rims();
         let Cutter { mut plan, .. } = cutter;
         let eliminated = plan.parts.last().map_or(0, |part| part.own.end);
-        let start = plan.parts.last().map_or(0, Part::end);
+        let start = plan.parts.last().map_or(0, Supernode::end);
         let rim = (eliminated as u32..plan.order.len() as u32).collect();
-        plan.parts.push(Part { own: eliminated..eliminated, rim, children, start });
+        plan.parts.push(Supernode { own: eliminated..eliminated, rim, children, start });
         plan
     }
 
@@ -108,7 +108,7 @@ impl Plan {
     }
 
     /// Elimination numbers of the rows of a part's front.
-    pub fn front<'a>(&self, part: &'a Part) -> impl Iterator<Item = usize> + use<'a> {
+    pub fn front<'a>(&self, part: &'a Supernode) -> impl Iterator<Item = usize> + use<'a> {
         part.own.clone().chain(part.rim.iter().map(|&number| number as usize))
     }
 }
@@ -185,7 +185,7 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
     fn part(&mut self, components: Vec<usize>, region: [Range<usize>; D], children: usize) {
         let start = self.plan.order.len();
         self.number(components);
-        self.plan.parts.push(Part { own: start..self.plan.order.len(), rim: Vec::new(), children, start: 0 });
+        self.plan.parts.push(Supernode { own: start..self.plan.order.len(), rim: Vec::new(), children, start: 0 });
         self.boxes.push(region);
     }
 
@@ -213,7 +213,7 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
                 }
             });
             rim.sort_unstable();
-            let part: &mut Part = &mut self.plan.parts[part];
+            let part: &mut Supernode = &mut self.plan.parts[part];
             (part.rim, part.start) = (rim, start);
             start = part.end();
         }

@@ -4,7 +4,7 @@ mod system;
 
 use super::factor::{self, Factor, Precision};
 use super::front;
-use super::plan::{NONE, Part, Plan};
+use super::plan::{NONE, Plan, Supernode};
 use super::reduction::role;
 use crate::slab::Slabs;
 use nalgebra::{DMatrix, DVector};
@@ -77,7 +77,7 @@ fn every_unknown_is_eliminated_once_and_before_what_it_is_told() {
         };
         assert!(plan.shared().iter().all(|&component| !is_inner(component)));
         assert!(plan.order[..plan.eliminated()].iter().all(|&component| is_inner(component)));
-        let (mut next, mut stack): (usize, Vec<&Part>) = (0, Vec::new());
+        let (mut next, mut stack): (usize, Vec<&Supernode>) = (0, Vec::new());
         for part in &plan.parts {
             assert_eq!(part.own.start, next);
             next = part.own.end;

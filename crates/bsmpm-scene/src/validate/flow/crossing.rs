@@ -17,13 +17,13 @@ struct Crossing<'a> {
     record: &'a Record,
     called: String,
     what: Acting,
-    parts: Vec<Part>,
+    parts: Vec<SurfacePart>,
     given: Option<&'a Given>,
 }
 
 /// A piece of a surface.
 #[derive(Clone, Copy)]
-enum Part {
+enum SurfacePart {
     Line([[f64; 2]; 2]),
     Circle([f64; 2], f64),
     Plate(Plate),
@@ -57,8 +57,8 @@ fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<Crossing<'a>> {
         called: format!("inflow.{number}"),
         what: Acting::Inflow(number),
         parts: match inflow.site {
-            Site::Segment { from, to } => vec![Part::Line([from, to])],
-            Site::Plate(plate) => vec![Part::Plate(plate)],
+            Site::Segment { from, to } => vec![SurfacePart::Line([from, to])],
+            Site::Plate(plate) => vec![SurfacePart::Plate(plate)],
             Site::Face(_) => Vec::new(),
         },
         given: None,
@@ -66,19 +66,19 @@ fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<Crossing<'a>> {
     drains.chain(inflows).collect()
 }
 
-fn parts(site: &DrainSite, case: &Case) -> Vec<Part> {
+fn parts(site: &DrainSite, case: &Case) -> Vec<SurfacePart> {
     match site {
-        DrainSite::Lines(lines) => lines.iter().map(|line| Part::Line(*line)).collect(),
-        DrainSite::Circle { center, radius } => vec![Part::Circle(*center, *radius)],
-        DrainSite::Plate(plate) => vec![Part::Plate(*plate)],
+        DrainSite::Lines(lines) => lines.iter().map(|line| SurfacePart::Line(*line)).collect(),
+        DrainSite::Circle { center, radius } => vec![SurfacePart::Circle(*center, *radius)],
+        DrainSite::Plate(plate) => vec![SurfacePart::Plate(*plate)],
         DrainSite::Face(Face { axis, upper }) => {
             let [lower, upper] = [case.grid.lower(), case.grid.upper()].map(|mut corner| {
                 corner[*axis] = if *upper { case.grid.upper() } else { case.grid.lower() }[*axis];
                 corner
             });
             match case.grid.dims() {
-                2 => vec![Part::Line([lower, upper].map(|[x, y, _]| [x, y]))],
-                _ => vec![Part::Plate(Plate { lower, upper, round: false })],
+                2 => vec![SurfacePart::Line([lower, upper].map(|[x, y, _]| [x, y]))],
+                _ => vec![SurfacePart::Plate(Plate { lower, upper, round: false })],
             }
         }
     }
@@ -109,11 +109,13 @@ fn meet(case: &Case, one: &Crossing<'_>, other: &Crossing<'_>) -> bool {
         && one.parts.iter().any(|a| other.parts.iter().any(|b| overlap(case, *a, *b, cell)))
 }
 
-fn overlap(case: &Case, a: Part, b: Part, cell: f64) -> bool {
+fn overlap(case: &Case, a: SurfacePart, b: SurfacePart, cell: f64) -> bool {
     match (a, b) {
-        (Part::Line(a), Part::Line(b)) => shared(a, b, APART * cell) > OVERLAP * cell,
-        (Part::Circle(a, r), Part::Circle(b, s)) => (a[0] - b[0]).hypot(a[1] - b[1]).max((r - s).abs()) < APART * cell,
-        (Part::Plate(a), Part::Plate(b)) => {
+        (SurfacePart::Line(a), SurfacePart::Line(b)) => shared(a, b, APART * cell) > OVERLAP * cell,
+        (SurfacePart::Circle(a, r), SurfacePart::Circle(b, s)) => {
+            (a[0] - b[0]).hypot(a[1] - b[1]).max((r - s).abs()) < APART * cell
+        }
+        (SurfacePart::Plate(a), SurfacePart::Plate(b)) => {
             let axis = a.normal();
             let is_one = axis == b.normal() && (a.lower[axis] - b.lower[axis]).abs() < APART * cell;
             let covers = |b: Plate, at: [f64; 3]| {

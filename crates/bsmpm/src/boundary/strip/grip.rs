@@ -21,7 +21,7 @@ pub struct StripContact<const D: usize> {
 /// The law at a point, and what the point does in a step. Friction is along the unit vector of [`Status::Slip`], which
 /// is zero where nothing rubs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grip<const D: usize> {
+pub(super) struct ContactState<const D: usize> {
     contact: StripContact<D>,
     pub status: Status<D>,
     transverse_share: f64, // of a tangential trial, the part that friction leaves of what is beside its direction; in space
@@ -40,7 +40,7 @@ impl<const D: usize> StripContact<D> {
     }
 }
 
-impl<const D: usize> Grip<D> {
+impl<const D: usize> ContactState<D> {
     /// At the start of a step, as far as what is `carried` tells.
     pub fn of(contact: StripContact<D>, carried: &Vector<D>) -> Self {
         let open_before = contact.is_open(carried);

@@ -1,7 +1,7 @@
 //! A point of a strip that holds material in one step: what it carries, its traction, and what it adds to the sums that
 //! the strip's report is made of.
 
-use super::Grip;
+use super::ContactState;
 use crate::boundary::coulomb::{ContactReport, Status};
 use crate::boundary::surface::Attachment;
 use crate::exact::Exact;
@@ -15,7 +15,7 @@ pub(super) const FAR: f64 = 0.5;
 
 /// Sums over the points of a strip.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sums {
+pub(super) struct StripSums {
     pub(super) held: Exact,
     pub(super) given: Exact, // J
     // closed, their normal force, that of those that slide, that times what they slid, dissipated, moved on
@@ -32,7 +32,7 @@ pub(super) struct StripPoint<const D: usize> {
     pub(super) normal: Option<Vector<D>>,
     pub(super) motion: Vector<D>,
     pub(super) carried: Vector<D>,
-    pub(super) grip: Option<Grip<D>>,
+    pub(super) grip: Option<ContactState<D>>,
 }
 
 impl<const D: usize> StripPoint<D> {
@@ -65,7 +65,7 @@ impl<const D: usize> StripPoint<D> {
     }
 
     /// Pa  elastic trial of a point in contact.
-    pub(super) fn trial(&self, grip: &Grip<D>, offsets: &[usize], u: &[f64]) -> Vector<D> {
+    pub(super) fn trial(&self, grip: &ContactState<D>, offsets: &[usize], u: &[f64]) -> Vector<D> {
         self.own(grip.start(&self.carried) + (self.motion - self.displacement(offsets, u)) * self.penalty)
     }
 
@@ -94,7 +94,7 @@ impl<const D: usize> StripPoint<D> {
 
     /// m  slip, what has slipped in all steps, motion, and of a point in contact less the gap and the gap; what it adds
     /// to the sums. `edge`, m, is that of the shortest cell.
-    pub(super) fn lengths(&self, offsets: &[usize], u: &[f64], edge: f64, sums: &mut Sums) -> [f64; LENGTHS] {
+    pub(super) fn lengths(&self, offsets: &[usize], u: &[f64], edge: f64, sums: &mut StripSums) -> [f64; LENGTHS] {
         let (motion, after) = (self.part(self.motion).norm(), self.traction(offsets, u));
         let (slip, accumulated) = (self.slip(offsets, u).norm(), after.norm() / self.penalty);
         let Some(grip) = &self.grip else { return [slip, accumulated, motion, 0.0, 0.0] };
@@ -140,7 +140,7 @@ impl<const D: usize> StripPoint<D> {
     }
 }
 
-impl Sums {
+impl StripSums {
     /// Two of all strips, and where one is in `contact` eight.
     pub(super) fn each(&self, contact: bool) -> impl Iterator<Item = Exact> {
         let of_contact = if contact { &self.contact[..] } else { &[] };

@@ -99,7 +99,7 @@ impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Divergence<'_
 }
 
 /// What the values of a patch's points add up to, point by point.
-pub(super) struct Sums<'a, const D: usize, const C: usize, const W: usize> {
+pub(super) struct PatchSums<'a, const D: usize, const C: usize, const W: usize> {
     pub rows: &'a [f64],
     pub stride: usize,
     pub points: Range<usize>,
@@ -107,7 +107,7 @@ pub(super) struct Sums<'a, const D: usize, const C: usize, const W: usize> {
     pub block: &'a mut PatchBlock<C>,
 }
 
-impl<const D: usize, const C: usize, const W: usize> InLanes for Sums<'_, D, C, W> {
+impl<const D: usize, const C: usize, const W: usize> InLanes for PatchSums<'_, D, C, W> {
     type Output = ();
 
     /// As in [`Divergence`], the nodes along the last axis stand side by side.
