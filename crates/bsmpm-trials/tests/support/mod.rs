@@ -5,7 +5,10 @@
 pub mod bounds;
 pub mod cases;
 pub mod circles;
+pub mod conic;
 pub mod driver;
+pub mod footings;
+pub mod limit_analysis;
 pub mod processes;
 pub mod results;
 pub mod slips;

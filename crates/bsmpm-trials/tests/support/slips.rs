@@ -2,9 +2,7 @@
 //! along lines between nodes, any two of which may bound a slip, whatever it crosses (translational discontinuity
 //! layout optimisation: Smith and Gilbert, 2007, Proc. R. Soc. A 463, 2461-2484). A linear program.
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::SupportedConeT::{NonnegativeConeT, ZeroConeT};
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus};
+use super::conic::{Program, Sum};
 
 /// What an edge of the ground meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,77 +148,53 @@ impl Ground {
     }
 }
 
-/// A linear program: the least sum of costs of columns that do nothing at the nodes, some of them bounded from below.
-#[derive(Default)]
-struct Program {
-    costs: Vec<f64>,
-    elements: Vec<(usize, usize, f64)>, // row, column, value
-    least: Vec<(usize, f64)>,           // column, value
-    work: Vec<f64>,                     // of the weight, by column
+/// Jumps across slips: what they add up to around every node, and the work of the weight.
+struct Jumps {
+    program: Program,
+    around: Vec<[Sum; 2]>,
+    work: Sum,
 }
 
-impl Program {
+impl Jumps {
     /// A jump of 1 m of the left of a slip over its right.
-    fn add(&mut self, slip: &Slip, jump: [f64; 2], cost: f64) -> usize {
-        let (column, [from, to]) = (self.costs.len(), slip.nodes);
-        for (axis, &part) in jump.iter().enumerate() {
-            self.elements.extend([(2 * from + axis, column, part), (2 * to + axis, column, -part)]);
+    fn add(&mut self, slip: &Slip, jump: [f64; 2], cost: f64) -> Sum {
+        let (column, [from, to]) = (self.program.variable(cost), slip.nodes);
+        for (axis, part) in jump.into_iter().enumerate() {
+            self.around[from][axis] += &column * part;
+            self.around[to][axis] += &column * -part;
         }
-        self.work.push(-slip.weight * jump[1] * slip.along[0].signum());
-        self.costs.push(cost);
+        self.work += &column * (-slip.weight * jump[1] * slip.along[0].signum());
         column
     }
-
-    /// With so many rows; `loaded`: the work of the weight is 1 J/m.
-    fn minimum(mut self, mut rows: usize, loaded: bool) -> f64 {
-        let mut right = vec![0.0; rows];
-        if loaded {
-            self.elements.extend(self.work.iter().enumerate().map(|(column, &work)| (rows, column, work)));
-            right.push(1.0);
-            rows += 1;
-        }
-        self.elements.extend(self.least.iter().enumerate().map(|(k, &(column, _))| (rows + k, column, -1.0)));
-        right.extend(self.least.iter().map(|&(_, value)| -value));
-        let (mut places, mut values) = ([Vec::new(), Vec::new()], Vec::new());
-        for &(row, column, value) in &self.elements {
-            places[0].push(row);
-            places[1].push(column);
-            values.push(value);
-        }
-        let [at, column] = places;
-        let columns = self.costs.len();
-        let matrix = CscMatrix::new_from_triplets(right.len(), columns, at, column, values);
-        let settings = DefaultSettingsBuilder::default().verbose(false).build().expect("settings that are sound");
-        let (none, cones) =
-            (CscMatrix::zeros((columns, columns)), [ZeroConeT(rows), NonnegativeConeT(self.least.len())]);
-        let solver = DefaultSolver::new(&none, &self.costs, &matrix, &right, &cones, settings);
-        let mut solver = solver.expect("a program that is sound");
-        solver.solve();
-        assert_eq!(solver.solution.status, SolverStatus::Solved);
-        solver.solution.obj_val
-    }
 }
 
-/// The least work of jumps that add up to none around every node. That of an edge is the ground's motion.
+/// The least work of jumps that add up to none around every node, or, `loaded`, that over the work of the weight. That
+/// of an edge is the ground's motion.
 fn mechanism(nodes: usize, slips: &[Slip], loaded: bool) -> f64 {
-    let mut program = Program::default();
+    let none = || [Sum::default(), Sum::default()];
+    let mut jumps = Jumps { program: Program::default(), around: vec![none(); nodes], work: Sum::default() };
     for slip in slips {
         let length = slip.along[0].hypot(slip.along[1]);
         let along = slip.along.map(|x| x / length);
         let (back, across) = (along.map(|x| -x), [-along[1], along[0]]);
-        let forwards = program.add(slip, along, slip.cost);
+        let forwards = jumps.add(slip, along, slip.cost);
         if slip.cost > 0.0 {
-            let backwards = program.add(slip, back, slip.cost);
-            program.least.extend([(forwards, 0.0), (backwards, 0.0)]);
+            let backwards = jumps.add(slip, back, slip.cost);
+            [forwards, backwards].into_iter().for_each(|size| jumps.program.positive(size));
         }
         if let Some(Edge::Free | Edge::Pushed(_)) = slip.edge {
-            let off = program.add(slip, across, 0.0);
+            let off = jumps.add(slip, across, 0.0);
             if let Some(Edge::Pushed(by)) = slip.edge {
-                program.least.push((off, dot(by, across)));
+                jumps.program.positive(&off - &Sum::constant(dot(by, across)));
             }
         }
     }
-    program.minimum(2 * nodes, loaded)
+    let Jumps { mut program, around, work } = jumps;
+    around.into_iter().flatten().for_each(|sum| program.zero(sum));
+    if loaded {
+        program.zero(&work - &Sum::constant(1.0));
+    }
+    program.minimum().0
 }
 
 fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

@@ -2,6 +2,7 @@
 
 use crate::support::bounds::{pipe, plate, strip};
 use crate::support::circles::strip_on_two_clays;
+use crate::support::footings::{FLAT, Footing};
 use crate::support::results::{at, history};
 use crate::support::{Scratch, shipped};
 
@@ -53,6 +54,19 @@ fn a_strip_on_strong_clay_over_soft_clay_carries_less_than_a_circle() {
         assert!(prandtl * ratio < blocks && factor < 1.03 * blocks, "{ratio}: {factor}, {blocks}");
         assert!(ratio < 1.0 || blocks < 1.04 * prandtl, "{blocks}");
         assert!(ratio < 1.0 || factor < 1.08 * prandtl, "{factor}");
+    }
+}
+
+/// Discs, smooth (Eason and Shield, 1960) and rough (Cox, Eason and Hopkins, 1961), and Prandtl's strip are between the
+/// bounds of coarse triangles.
+#[test]
+fn bounds_of_triangles_hold_what_is_known() {
+    let disc = Footing { round: true, rough: false, outline: FLAT, depth: 0.0, side: 0.0, below: 1.0 };
+    let known = [(5.69, disc), (6.05, Footing { rough: true, ..disc }), (5.1416, Footing { round: false, ..disc })];
+    for (exact, footing) in known {
+        let mesh = footing.mesh(0.1, 0.3);
+        let (lower, upper) = (mesh.lower_bound(), mesh.upper_bound());
+        assert!(lower < exact && exact < upper && upper - lower < 0.13 * exact, "{exact}: {lower}, {upper}");
     }
 }
 
