@@ -69,8 +69,8 @@ pub struct Committed {
     pub advance: f64,
     /// m3  of water that the points took in, over all ranks
     pub content: f64,
-    /// J  kinetic energy of points beside fixed faces beyond that of their motion (see [`beside_fixed`]); in dynamics
-    /// with such a face
+    /// J  kinetic energy of points beside fixed faces beyond that of their motion, over all ranks; in dynamics with
+    /// such a face
     pub beside_fixed: Option<f64>,
 }
 
