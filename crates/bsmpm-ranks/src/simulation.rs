@@ -253,13 +253,14 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let (boundary, anchored) = (&self.model.boundary, self.points.anchored());
         let anchors = self.points.surface.anchors.renewed(&self.model.surfaces(), idle, anchored, &*self.halo);
         let places = anchors.places(boundary, anchored, &*self.halo);
-        let mut pressure = follower::now::<K, D>(&boundary.loads, (&self.model.grid, &anchors), anchored, &*self.halo);
+        let pressure = follower::now::<K, D>(&boundary.loads, (&self.model.grid, &anchors), anchored, &*self.halo);
         let surface = &mut self.points.surface;
         surface.anchors = anchors;
         for load in (0..idle.loads.len()).filter(|&load| idle.loads[load]) {
             surface.position[load].clone_from(&places.loads[load]);
-            surface.pressure[load] = std::mem::take(&mut pressure[load]);
         }
+        // Those that went on have other anchors where bodies were taken away.
+        surface.pressure = pressure;
     }
 
     /// Goes over to the laws, supports and loads of a further model, which has the same grid. Fails on all ranks if a

@@ -220,7 +220,16 @@ struct Undeformed<const D: usize> {
 impl<const D: usize> Undeformed<D> {
     fn of<K: Kinematics<D>>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
-        let nodes = Nodes::map(model, &shape, points, (0.0, 0.0), halo)?;
+        let mut nodes = Nodes::map(model, &shape, points, (0.0, 0.0), halo)?;
+        // The displacements of a start are none: what it seeks is a stress.
+        let followers = std::mem::take(&mut nodes.followers);
+        if !followers.is_empty() {
+            let (loads, still) = (&model.boundary.loads[..], vec![0.0; model.grid.nodes() * D]);
+            let traction =
+                followers.tractions::<K>((loads, &model.grid), points, (&still, &|_| Tensor::identity()), halo);
+            let force = followers.forces(&traction, &model.grid, halo);
+            nodes.f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
+        }
         let movable = nodes.contacts.movable(&nodes.free);
         let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (0.0, 0.0));
         Ok(Self { shape, nodes, grips })

@@ -1,11 +1,12 @@
 //! Follower loads: pressures, which turn and stretch with the surface, as it is at the end of the step that is sought.
 //!
 //! The surface is made of the pieces that a load's points stand for. The material that these are anchored to carries
-//! their corners, `x_c = x_p + F_p (X_c - X_p)`, and corners that pieces have in common go by the mean: a surface that
-//! was closed stays so. A piece's area by its own F (Nanson) is that of the material a part of a cell below it, and
-//! falls short of the surface's by as much times the curvature: a tube of .5 and 1 m in 8 cells was pressed with 1 %
-//! too little at 100 kPa (E = 1 MPa), 4.6 % at 150. And pressures of the step's start, or that went on as in the step
-//! before, let a tube grow beyond the pressure that it bears, step by step, each of them in balance.
+//! their corners, `x_c = x_p + F_p (X_c - X_p)`, and corners that pieces of one load have in common go by the mean:
+//! what it presses with in all is decided by its edge alone. A piece's area by its own F (Nanson) is that of the
+//! material a part of a cell below it, and falls short of the surface's by as much times the curvature: a tube of .5
+//! and 1 m in 8 cells was pressed with 1 % too little at 100 kPa (E = 1 MPa), 4.6 % at 150. And pressures of the step's
+//! start, or that went on as in the step before, let a tube grow beyond the pressure that it bears, step by step, each
+//! of them in balance.
 
 use super::Load;
 use super::anchor::Anchored;
@@ -146,6 +147,23 @@ impl<const D: usize> FollowerLoads<D> {
             return Self::default();
         }
         Self { corners: LoadCorners::of(loads), carriers: carriers(loads, (grid, anchors), points), pushed }
+    }
+
+    /// Of every load how many of its pieces this rank carries; empty where none follows the surface.
+    pub(super) fn carried(&self, loads: &[Load<D>]) -> Vec<f64> {
+        if self.is_empty() {
+            return Vec::new();
+        }
+        let ends = loads.iter().scan(0, |end, load| {
+            *end += if load.follows { load.points.len() } else { 0 };
+            Some(*end)
+        });
+        let ends: Vec<usize> = ends.collect();
+        let mut carried = vec![0.0; loads.len()];
+        for carrier in &self.carriers {
+            carried[ends.partition_point(|&end| end <= carrier.piece)] += 1.0;
+        }
+        carried
     }
 
     /// Whether no load follows the surface.

@@ -84,19 +84,27 @@ pub fn add_forces<const D: usize>(
             }
         }
     }
+    let followers = match loads.iter().any(|load| load.follows) {
+        true => {
+            let anchors = Anchors::of(surfaces, &surface.anchors, points, halo);
+            FollowerLoads::of(loads, pushed, (grid, &anchors), points)
+        }
+        false => FollowerLoads::default(),
+    };
+    applied.extend(followers.carried(loads));
     halo.reduce(&mut applied);
-    let lacks = |number: &usize| applied[*number] < loads[*number].points.len() as f64;
+    // Points of a load that have material where it pushes, and whose material is there, if that carries them.
+    let found = |number: usize| {
+        let carried = applied.get(loads.len() + number).filter(|_| loads[number].follows);
+        carried.map_or(applied[number], |carried| carried.min(applied[number]))
+    };
+    let lacks = |number: &usize| found(*number) < loads[*number].points.len() as f64;
     let lost = (0..loads.len()).filter(|&number| !loads[number].is_idle()).find(lacks);
     if let Some(load) = lost {
-        let points = loads[load].points.len() - applied[load] as usize;
-        return Err(StepError::Unloaded { load, points });
+        return Err(StepError::Unloaded { load, points: loads[load].points.len() - found(load) as usize });
     }
     f_ext.iter_mut().zip(halo.sum(&force)).for_each(|(sum, force)| *sum += force);
-    if !loads.iter().any(|load| load.follows) {
-        return Ok(FollowerLoads::default());
-    }
-    let anchors = Anchors::of(surfaces, &surface.anchors, points, halo);
-    Ok(FollowerLoads::of(loads, pushed, (grid, &anchors), points))
+    Ok(followers)
 }
 
 /// Positions that all loads' points would have after the converged displacement `u`, m, moved by the nodes that their

@@ -37,12 +37,12 @@ pub struct DrainReport {
 pub struct Drainage {
     offsets: Vec<usize>,
     of: [usize; 2], // drains, inflows
-    outlets: Vec<Sink>,
+    outlets: Vec<WaterCrossing>,
 }
 
 /// A surface point that water goes through: a sink, or a source.
 #[derive(Clone, Debug)]
-struct Sink {
+struct WaterCrossing {
     surface: usize, // of the drains, then of the inflows
     attachment: Attachment,
     conductance: f64, // m3/Pa  in the step
@@ -51,7 +51,7 @@ struct Sink {
     one_way: bool,    // lets water out only, where the pressure is above the given one
 }
 
-impl Sink {
+impl WaterCrossing {
     /// m3  out of the ground in the step, under the excess pressures `p`, Pa, nodal.
     fn out(&self, offsets: &[usize], p: &[f64]) -> f64 {
         if !self.is_open(offsets, p) {
@@ -102,19 +102,24 @@ impl Drainage {
                 let attachment = Attachment::lowered_at(grid, &offsets, &counts, &place.x);
                 let Some(attachment) = attachment else { continue };
                 let through = dt * area * place.normal.norm();
-                let none = Sink { surface, attachment, conductance: 0.0, given: 0.0, inflow: 0.0, one_way: false };
+                let none =
+                    WaterCrossing { surface, attachment, conductance: 0.0, given: 0.0, inflow: 0.0, one_way: false };
                 let conductance = through * CONDUCTANCE * place.leads(grid) / water.unit_weight;
                 let dry = Given::Seepage.excess(water.unit_weight, &place.x, t + dt, &still);
                 outlets.push(match flow.drains.get(surface) {
                     Some(drain) => {
                         let given = drain.given.excess(water.unit_weight, &place.x, t + dt, &still);
                         let one_way = drain.given == Given::Seepage && still(&place.x) <= 0.0;
-                        Sink { conductance, given, one_way, ..none }
+                        WaterCrossing { conductance, given, one_way, ..none }
                     }
                     None => {
                         let inflow = &flow.inflows[surface - flow.drains.len()];
-                        let rain = Sink { inflow: through * inflow.rate.at(t + dt), ..none };
-                        if inflow.runs_off { Sink { conductance, given: dry, one_way: true, ..rain } } else { rain }
+                        let rain = WaterCrossing { inflow: through * inflow.rate.at(t + dt), ..none };
+                        if inflow.runs_off {
+                            WaterCrossing { conductance, given: dry, one_way: true, ..rain }
+                        } else {
+                            rain
+                        }
                     }
                 });
             }
@@ -148,7 +153,7 @@ impl Drainage {
     /// Adds the derivative of that to the matrix of the pressures, m3/Pa: of drains that let water out only where they
     /// are open under `p`.
     pub fn assemble(&self, p: &[f64], solver: &mut dyn LinearSolver) {
-        let acts = |outlet: &&Sink| outlet.conductance > 0.0 && outlet.is_open(&self.offsets, p);
+        let acts = |outlet: &&WaterCrossing| outlet.conductance > 0.0 && outlet.is_open(&self.offsets, p);
         for outlet in self.outlets.iter().filter(acts) {
             let N = outlet.attachment.N();
             let block: Vec<f64> =
@@ -159,7 +164,7 @@ impl Drainage {
 
     /// J  what the water that leaves under the excess pressures `p`, Pa, takes along, on this rank.
     pub fn work(&self, p: &[f64]) -> Exact {
-        let of = |outlet: &Sink| outlet.attachment.value(&self.offsets, p) * outlet.out(&self.offsets, p);
+        let of = |outlet: &WaterCrossing| outlet.attachment.value(&self.offsets, p) * outlet.out(&self.offsets, p);
         self.outlets.iter().map(of).collect()
     }
 

@@ -3,6 +3,7 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
+use bsmpm::boundary::{Load, surface};
 use bsmpm::error::StepError;
 use bsmpm::initial;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
@@ -47,6 +48,23 @@ fn elastic_gravity_is_in_equilibrium_on_the_drawn_geometry() {
     elastic_start::<PlaneStrain, 2>(Stabilisation::None);
     elastic_start::<PlaneStrain, 2>(Stabilisation::FBar);
     elastic_start::<Solid, 3>(Stabilisation::None);
+}
+
+/// A pressure acts on the surface as it is drawn, not on that which the displacements of the elastic state would have.
+#[test]
+fn a_pressure_at_the_start_is_balanced_on_the_drawn_geometry() {
+    let mut scene = ground::<PlaneStrain, 2>(hencky(1e3, 0.3));
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 4.0].into(), &[2.0, 4.0].into(), 3);
+    scene = scene.load(Load { follows: true, ..Load::dead(points, [0.0, -40.0].into(), 0.0) });
+    let halo = scene.halo();
+    let mut solver = Skyline::new(&scene.model.grid);
+    initial::set_elastic(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an elastic state");
+    let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
+    let settling = initial::settle(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an equilibrium");
+    let (after, _) = scene.solved(1.0, 1.0);
+    let moved = after.points.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
+    println!("unbalance {:.1e}, {} rounds, moved {moved:.1e} m", found.force, settling.rounds);
+    assert!(found.force <= 1e-8 && settling.rounds == 0 && moved <= 1e-7);
 }
 
 #[test]
