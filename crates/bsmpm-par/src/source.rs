@@ -64,7 +64,7 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         format!("nodes            {}", estimate.nodes),
         format!("unknowns         at most {}", estimate.unknowns),
         format!("memory           about {} MiB on each of {ranks} rank(s){newton}", each(estimate.bytes_on(ranks))),
-        format!("ranks            at most {}, of use about {}", case.grid.axes[0].cells(), estimate.useful_ranks),
+        format!("ranks            at most {}, of use about {}", case.most_ranks(), estimate.useful_ranks),
         format!("nominal steps    {}", bsmpm_scene::model::nominal_steps(case)),
     ];
     let told = case.notes.iter().map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));

@@ -82,7 +82,7 @@ pub struct Estimate {
     pub entries: u64,
     /// Material points.
     pub points: u64,
-    /// Ranks that have something to do: at least a thousand unknowns each, and a column of cells.
+    /// Ranks that have something to do: at least a thousand unknowns each, and [`Case::most_ranks`] at most.
     pub useful_ranks: u64,
     /// Memory of the case, bytes, however many ranks share it: points, nodes, stiffness and its factor, where the
     /// bodies are at the start. Not what each rank adds, see [`Estimate::bytes_on`].
@@ -283,7 +283,7 @@ impl Case {
             pressures: bounded(pressures),
             entries: bounded(entries),
             points: self.points(),
-            useful_ranks: bounded((dims * occupied / FEWEST).clamp(1, self.grid.spans(0) as u128)),
+            useful_ranks: bounded((dims * occupied / FEWEST).clamp(1, self.most_ranks() as u128)),
             bytes: bounded(bytes),
             repeated: bounded(repeated),
             coordinates: bounded(if coordinates { entries * BUILT } else { 0 }),

@@ -41,18 +41,31 @@ impl Case {
     /// Of a solid the least largest face decides; in a plane there is one, unless there are more ranks than columns.
     /// `None` if there are too many ranks, or more than columns beside a free field, whose faces are one rank's each.
     pub fn parts(&self, ranks: usize, room: [usize; 2]) -> Option<usize> {
+        self.parting().parts(ranks, self.columns_and_rows(), room)
+    }
+
+    /// The most ranks that the case can have; not every number below has two divisors that fit, see [`Case::parts`].
+    pub fn most_ranks(&self) -> usize {
+        let [columns, rows] = self.columns_and_rows();
+        if self.parting() == Parting::Never { columns } else { columns * rows }
+    }
+
+    fn parting(&self) -> Parting {
         let free_field = |faces: &[Support; 2]| faces.contains(&Support::FreeField);
-        let parting = match self.grid.dims() {
+        match self.grid.dims() {
             _ if self.boundary.iter().any(free_field) => Parting::Never,
             3 => Parting::LeastFace,
             _ => Parting::Needed,
-        };
-        parting.parts(ranks, [0, 1].map(|axis| self.grid.spans(axis)), room)
+        }
+    }
+
+    fn columns_and_rows(&self) -> [usize; 2] {
+        [0, 1].map(|axis| self.grid.spans(axis))
     }
 
     /// Why so many ranks are refused.
     pub fn too_many(&self, ranks: usize) -> String {
-        let [columns, rows] = [0, 1].map(|axis| self.grid.spans(axis));
+        let [columns, rows] = self.columns_and_rows();
         format!(
             "{ranks} ranks are too many: the grid has {columns} columns of {rows} cells along y, so at most {columns} \
              ranks, or a product of at most {columns} slabs and {rows} parts of each"

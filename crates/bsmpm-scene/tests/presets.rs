@@ -264,6 +264,17 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
     }
 }
 
+/// A plate at the axis is half of what it is across, as one at a plane of symmetry is; a ring has its own width.
+#[test]
+fn a_circular_plate_has_the_cells_of_a_strip_as_wide() {
+    let plate = valid(FOOTING, &["accuracy=draft", "geometry=axisymmetric"]);
+    let strip = valid(FOOTING, &["accuracy=draft"]);
+    assert!(plate.grid == strip.grid && discretisation(&plate) == discretisation(&strip), "{:?}", plate.grid);
+    assert!(is_fine(&plate.grid.axes[0], [0.0, 1.25], 0.25) && plate.warnings.is_empty(), "{:?}", plate.warnings);
+    let ring = valid(FOOTING, &["accuracy=draft", "geometry=axisymmetric", "footing.from=[0.5, 10.0]"]);
+    assert!(is_fine(&ring.grid.axes[0], [0.5, 1.0], 0.0625), "{:?}", ring.grid.axes[0]);
+}
+
 /// What is small follows each strip or load and its way, not the shortest of them.
 #[test]
 fn every_strip_and_load_has_small_cells_of_its_own() {

@@ -60,6 +60,16 @@ fn the_column_of_the_paper() {
     assert_eq!(case.analysis.dt, 2.5e-4);
 }
 
+/// Slabs of a solid are cut along y, too: 56 x 56 cells from above and a C0 line along each axis, 65,000 unknowns.
+#[test]
+fn ranks_of_a_solid_are_not_bounded_by_its_columns_along_x() {
+    let bytes = load(&cases().join("square_footing.toml")).unwrap();
+    let case = Case::from_bytes("square_footing.toml", &bytes, &["grid.cell=0.0625".to_owned()]).unwrap();
+    let useful = case.estimate().useful_ranks;
+    assert_eq!((case.most_ranks(), case.parts(57 * 57, [1; 2])), (57 * 57, Some(57)));
+    assert!(useful > 57, "{useful} of use");
+}
+
 /// Peaks of resident memory (bytes), summed over the ranks, as `run.json` told them after two steps: shipped
 /// cases, most with other cells, points and methods, so that each part of the estimate is the largest somewhere.
 const MEASURED: &[(&str, &[&str], usize, f64)] = &[

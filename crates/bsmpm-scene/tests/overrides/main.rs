@@ -16,6 +16,7 @@ use bsmpm_scene::{
 
 const FULL: &str = include_str!("../full.toml");
 const STATIC: &str = include_str!("../bad_cases/static.toml");
+const ROUND: &str = include_str!("../bad_cases/round.toml");
 const SEEPING: &str = include_str!("../bad_cases/seeping.toml");
 
 fn set(text: &str, overrides: &[&str]) -> Result<Case, Vec<Error>> {
@@ -340,6 +341,9 @@ fn doubtful_cases_are_warned_of() {
         |points: &str| valid(FULL, &["grid.order=cubic", &format!("body.*.points_per_cell={points}")]).warnings;
     let warned = |points: &str| of_cubic(points).iter().any(|warning| warning.contains("cubic splines too coarsely"));
     assert!(warned("2") && !warned("3"));
+    let at_axis = |set: &[&str]| valid(ROUND, set).warnings.iter().any(|warning| warning.contains("meets the axis"));
+    let ring = ["grid.order=cubic", "body.0.box.lower=[0.25, 0.0]", "point_load.0.at=[0.5, 1.0]"];
+    assert!(at_axis(&ring[..1]) && !at_axis(&ring) && !at_axis(&[]));
     let plastic = FULL.replace("[stabilisation]\nmethod = \"f-bar\"", "");
     assert!(valid(&plastic, &[]).warnings.iter().any(|warning| warning.contains("material.sand is plastic")));
 }

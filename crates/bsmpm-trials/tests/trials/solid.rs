@@ -66,22 +66,27 @@ pub fn slice() -> String {
     slice
 }
 
+/// F-bar's exponent is 1/2 in plane strain and 1/3 in space: two discretisations of the same body, which differ by as
+/// much as `cases/results/solid.md` says.
 #[test]
-fn a_slice_between_rollers_is_plane_strain() {
-    let run = |case: &str, name: &str| {
+fn a_slice_between_rollers_is_plane_strain_but_for_f_bars_exponent() {
+    let run = |case: &str, method: &str| {
         let scratch = Scratch::with_case(case);
-        scratch.direct(&["case.toml", "-q", "-o", name]).expect(0);
-        history(&scratch.path(name))
+        scratch.direct(&["case.toml", "-q", "-o", "out", "--set", &format!("stabilisation.method={method}")]).expect(0);
+        history(&scratch.path("out"))
     };
-    let (plane, solid) = (run(PLANE, "plane"), run(&slice(), "solid"));
     let pairs = [("displacement-x", "displacement-x"), ("displacement-y", "displacement-z")];
     let stresses = [("stress-xx", "stress-xx"), ("stress-yy", "stress-zz"), ("stress-zz", "stress-yy")];
-    for (of_plane, of_solid) in pairs.into_iter().chain(stresses) {
-        let [expected, found] = [at(&plane, of_plane, 0.3), at(&solid, of_solid, 0.3)];
-        println!("{of_solid}: {:e}", found / expected - 1.0);
-        assert!((found / expected - 1.0).abs() < 1e-11, "{of_solid}: {found} for {expected}");
+    for (method, least, most) in [("none", 0.0, 1e-11), ("consistent-f-bar", 1e-4, 1e-2)] {
+        let (plane, solid) = (run(PLANE, method), run(&slice(), method));
+        for (of_plane, of_solid) in pairs.into_iter().chain(stresses) {
+            let [expected, found] = [at(&plane, of_plane, 0.3), at(&solid, of_solid, 0.3)];
+            let apart = found / expected - 1.0;
+            println!("{method}, {of_solid}: {apart:e}");
+            assert!((least..most).contains(&apart.abs()), "{method}, {of_solid}: {found} for {expected}");
+        }
+        assert!(at(&solid, "displacement-y", 0.3).abs() < 1e-14 && at(&plane, "displacement-x", 0.3) > 0.05);
     }
-    assert!(at(&solid, "displacement-y", 0.3).abs() < 1e-14 && at(&plane, "displacement-x", 0.3) > 0.05);
 }
 
 /// A round column of sand that is let go.
