@@ -57,12 +57,16 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         0 => String::new(),
         _ => format!("; {} once a step needs Newton's method", each(estimate.bytes_with_newton_on(ranks))),
     };
+    let pressures = match estimate.pressures {
+        0 => String::new(),
+        pressures => format!(", and {pressures} pore pressures where the bodies start"),
+    };
     let mut lines = vec![
         case.title.clone(),
         format!("points           {}", estimate.points),
         format!("cells            {}", estimate.cells),
         format!("nodes            {}", estimate.nodes),
-        format!("unknowns         at most {}", estimate.unknowns),
+        format!("unknowns         at most {}{pressures}", estimate.unknowns),
         format!("memory           about {} MiB on each of {ranks} rank(s){newton}", each(estimate.bytes_on(ranks))),
         format!("ranks            at most {}, of use about {}", case.most_ranks(), estimate.useful_ranks),
         format!("nominal steps    {}", bsmpm_scene::model::nominal_steps(case)),

@@ -1,24 +1,31 @@
 //! `bsmpm estimate` with this program, of a case that has run.
 
+use std::path::PathBuf;
+
 use crate::support::{Scratch, processes, program, shipped};
 use bsmpm_tools::estimate::{EstimateArguments, run};
 use serde_json::Value;
 
-#[test]
-fn the_short_footing_is_estimated_beside_its_run() {
-    let (scratch, case) = (Scratch::new(), shipped("short/strip_footing.toml"));
-    scratch.direct(&[case.to_str().unwrap(), "-q", "-o", "run.out"]).expect(0);
-    let mut arguments = EstimateArguments {
+/// Of what a run took, as a program reads it, from probes only.
+fn beside(case: PathBuf, run: PathBuf) -> EstimateArguments {
+    EstimateArguments {
         case,
         ranks: None,
         no_probe: false,
         no_whole: true,
         budget: 60.0,
-        against: Some(scratch.path("run.out")),
+        against: Some(run),
         json: true,
         set: Vec::new(),
         command: vec![program().to_owned()],
-    };
+    }
+}
+
+#[test]
+fn the_short_footing_is_estimated_beside_its_run() {
+    let (scratch, case) = (Scratch::new(), shipped("short/strip_footing.toml"));
+    scratch.direct(&[case.to_str().unwrap(), "-q", "-o", "run.out"]).expect(0);
+    let mut arguments = beside(case, scratch.path("run.out"));
     let (mut told, _turn) = (Vec::new(), processes::turn());
     let found: Value = serde_json::from_str(&run(&arguments, |line| told.push(line.to_owned())).unwrap()).unwrap();
     assert!(told.iter().any(|line| line.starts_with("cells 2 times")), "{told:?}");
@@ -40,4 +47,18 @@ fn the_short_footing_is_estimated_beside_its_run() {
     assert!(told.last().is_some_and(|line| line.starts_with("the whole case: ")), "{told:?}");
     let evaluations = ["work", "actual"].map(|of| found[of]["evaluations"].as_f64());
     assert!(evaluations[0].is_some() && evaluations[0] == evaluations[1], "{evaluations:?}");
+}
+
+/// Clay that consolidates, whose pore pressures are unknowns, too: measured 1.10 of the evaluations.
+#[test]
+fn the_embankment_on_clay_is_estimated_beside_its_run() {
+    let (scratch, case) = (Scratch::new(), shipped("embankment_consolidation.toml"));
+    scratch.direct(&[case.to_str().unwrap(), "-q", "-o", "run.out"]).expect(0);
+    let (arguments, _turn) = (beside(case, scratch.path("run.out")), processes::turn());
+    let found: Value = serde_json::from_str(&run(&arguments, |_| ()).unwrap()).unwrap();
+    for [ours, of] in [["work/evaluations", "actual/evaluations"], ["memory_per_rank/0", "actual/memory"]] {
+        let [ours, of] = [ours, of].map(|path| found.pointer(&format!("/{path}")).and_then(Value::as_f64).unwrap());
+        assert!((1.0 / 1.5..1.5).contains(&(ours / of)), "{found}");
+    }
+    assert!(found["pressures"].as_f64().is_some_and(|pressures| pressures > 0.0), "{found}");
 }
