@@ -5,7 +5,6 @@ pub mod absorbing;
 pub mod anchor;
 pub mod contact;
 pub mod coulomb;
-pub mod follower;
 pub mod load;
 pub mod rigid;
 pub mod strip;

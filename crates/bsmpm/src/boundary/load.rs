@@ -1,10 +1,11 @@
 //! Tractions and point loads: forces on points of the body's surface that move with the body.
 //!
 //! A dead load keeps force and direction. A pressure turns and stretches with the surface (see
-//! [`follower`](super::follower)).
+//! [`follower`]).
+
+pub mod follower;
 
 use super::anchor::{Anchored, Surfaces};
-use super::follower::FollowerLoads;
 use super::strip::reduce;
 use super::surface::{Anchors, Attachment, Surface, SurfacePoint};
 use crate::error::StepError;
@@ -12,6 +13,7 @@ use crate::grid::{Contributions, Grid};
 use crate::parallel::Halo;
 use crate::schedule::between;
 use crate::tensor::Vector;
+use follower::FollowerLoads;
 
 /// A load on a surface.
 #[derive(Clone, Debug, PartialEq)]

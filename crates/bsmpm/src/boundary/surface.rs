@@ -210,7 +210,7 @@ pub struct Surface<const D: usize> {
     /// m  position of every load's points, which move with the material that they are anchored to
     pub position: Vec<Vec<Vector<D>>>,
     /// Pa  of every load that follows the surface its traction when fully applied, per area of the start, turned and
-    /// stretched with the material (see [`follower`](super::follower)); empty for the others
+    /// stretched with the material (see [`follower`](super::load::follower)); empty for the others
     pub pressure: Vec<Vec<Vector<D>>>,
     /// that material
     pub anchors: Anchors,

@@ -3,8 +3,7 @@
 use crate::background::Blocks;
 use crate::boundary::absorbing::Dashpots;
 use crate::boundary::contact::Contacts;
-use crate::boundary::follower::FollowerLoads;
-use crate::boundary::load;
+use crate::boundary::load::{self, follower::FollowerLoads};
 use crate::boundary::rigid::{RigidContacts, Surroundings};
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};

@@ -9,9 +9,9 @@
 //! of them in balance.
 
 use super::Load;
-use super::anchor::Anchored;
-use super::strip::reduce;
-use super::surface::{Anchors, Attachment, CORNERS, SurfacePoint};
+use crate::boundary::anchor::Anchored;
+use crate::boundary::strip::reduce;
+use crate::boundary::surface::{Anchors, Attachment, CORNERS, SurfacePoint};
 use crate::grid::{Contributions, Grid};
 use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
@@ -198,7 +198,8 @@ impl<const D: usize> FollowerLoads<D> {
     }
 }
 
-/// What [`Surface::pressure`](super::Surface) is with the points as they are. One reduction, if a load follows.
+/// What [`Surface::pressure`](crate::boundary::Surface) is with the points as they are. One reduction, if a load
+/// follows.
 pub fn now<K: Kinematics<D>, const D: usize>(
     loads: &[Load<D>],
     (grid, anchors): (&Grid<D>, &Anchors),
