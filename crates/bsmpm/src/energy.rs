@@ -59,6 +59,7 @@ use crate::step::adjoint::Pressures;
 use crate::step::commit::Answer;
 use crate::step::problem::Problem;
 use crate::tensor::Vector;
+use crate::threads;
 use crate::water::{carried, work};
 use std::ops::AddAssign;
 
@@ -200,13 +201,14 @@ impl Draft {
         flows.penalty = strips.given;
         flows.penalty -= &strips.taken;
         flows.penalty -= &strips.rubbed;
-        let volumes = || answers.iter().zip(&points.volume);
-        flows.plastic = volumes().map(|(answer, volume)| volume * answer.dissipation).collect();
+        let stored =
+            |p: usize| [answers[p].dissipation, answers[p].elastic_energy].map(|dense| points.volume[p] * dense);
+        let [plastic, mut elastic] = threads::sums(points.len(), stored);
+        flows.plastic = plastic;
         if !model.damping.is_empty() {
             let damped = |p: usize| found.trial.viscous(model, points, p).map_or(0.0, |viscous| viscous.dissipation);
-            flows.plastic.extend((0..points.len()).map(|p| points.volume[p] * damped(p)));
+            flows.plastic += &threads::sum(points.len(), |p| points.volume[p] * damped(p));
         }
-        let mut elastic: Exact = volumes().map(|(answer, volume)| volume * answer.elastic_energy).collect();
         if model.balances_energy {
             flows.integration -= &flows.plastic;
         }
@@ -239,7 +241,8 @@ impl Draft {
             let tau = found.trial.pressed(p, found.trial.damped(model, points, p, tau));
             volume[p] * K::flux(&tau, &found.trial.dF(p)).dot(&grad)
         };
-        flows.integration.extend(transfer::gradients::<K, D, _>((shape, &points.x), u, work_of));
+        let work = transfer::gradients::<K, D, _>((shape, &points.x), u, work_of);
+        flows.integration += &threads::sum(work.len(), |p| work[p]);
         flows.integration -= &self.elastic;
         flows.integration += &elastic(model, points, self.t);
         flows.smoothing += &self.elastic;
@@ -298,13 +301,13 @@ impl Draft {
 
 fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
     let Some(motion) = &points.motion else { return Exact::ZERO };
-    motion.v.iter().zip(&points.mass).map(|(v, mass)| 0.5 * mass * v.norm_squared()).collect()
+    threads::sum(points.len(), |p| 0.5 * points.mass[p] * motion.v[p].norm_squared())
 }
 
 /// A state that is no strain has no energy: not a number, like the step that led to it.
 fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: f64) -> Exact {
-    let mut energy: Exact =
-        (0..points.len()).map(|p| points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p))).collect();
+    let of = |p: usize| points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p));
+    let mut energy = threads::sum(points.len(), of);
     energy += &work::in_points(model, points, t);
     energy
 }
@@ -318,8 +321,10 @@ fn add_gravity<K: Kinematics<D>, const D: usize>(
 ) {
     let (Some(before), Some(after)) = (problem.model.body_force(t), problem.model.body_force(t + dt)) else { return };
     let moved = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| Vector::from(du) * problem.points.mass[p]);
-    flows.external.extend(moved.iter().map(|moved| 0.5 * (before + after).dot(moved)));
-    flows.integration.extend(moved.iter().map(|moved| -0.5 * (after - before).dot(moved)));
+    let by = [0.5 * (before + after), -0.5 * (after - before)];
+    let [external, integration] = threads::sums(moved.len(), |p| by.map(|force| force.dot(&moved[p])));
+    flows.external += &external;
+    flows.integration += &integration;
 }
 
 fn add_water<K: Kinematics<D>, const D: usize>(

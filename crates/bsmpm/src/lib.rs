@@ -52,4 +52,5 @@ pub mod solve;
 pub mod stabilisation;
 pub mod step;
 pub mod tensor;
+pub mod threads;
 pub mod water;

@@ -14,18 +14,29 @@ pub use front::front;
 pub use part::Part;
 pub use section::{Section, SectionForces, section_forces};
 
-use crate::exact::Exact;
 use crate::grid::Grid;
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::tensor::Vector;
+use crate::threads;
 
 /// Bisections of a percentile: the interval shrinks to 1e-15 of the grid.
 const BISECTIONS: usize = 50;
 
 /// Largest coordinate of any point of a part along `axis`, from the grid's lower corner (m); 0 without points.
 pub fn farthest<const D: usize>(points: &Points<D>, part: &Part, axis: usize, halo: &dyn Halo) -> f64 {
-    let mut largest = [part.of(points).map(|p| points.x[p][axis]).fold(0.0, f64::max)];
+    largest(points, part, halo, |p| points.x[p][axis])
+}
+
+/// Largest value among the points of a part, 0 without any that is larger.
+fn largest<const D: usize>(
+    points: &Points<D>,
+    part: &Part,
+    halo: &dyn Halo,
+    value: impl Fn(usize) -> f64 + Sync,
+) -> f64 {
+    let of_part = |p| if part.holds(points, p) { value(p) } else { 0.0 };
+    let mut largest = [threads::largest(points.len(), of_part)];
     halo.maximum(&mut largest);
     largest[0]
 }
@@ -52,9 +63,7 @@ pub fn percentile<const D: usize>(
 
 /// Largest displacement of any point of a part since displacements were last set to zero, m.
 pub fn largest_displacement<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
-    let mut largest = [part.of(points).map(|p| points.displacement(p).norm()).fold(0.0, f64::max)];
-    halo.maximum(&mut largest);
-    largest[0]
+    largest(points, part, halo, |p| points.displacement(p).norm())
 }
 
 /// Largest coordinate along the last axis (m) of the points of a part that lie within half a cell of `x` along axis 0
@@ -62,17 +71,13 @@ pub fn largest_displacement<const D: usize>(points: &Points<D>, part: &Part, hal
 pub fn surface<const D: usize>(grid: &Grid<D>, (points, part): (&Points<D>, &Part), x: f64, halo: &dyn Halo) -> f64 {
     let axis = &grid.axes()[0];
     let half = axis.cell_of(x).map_or(0.0, |cell| 0.5 * (axis.breakpoint(cell + 1) - axis.breakpoint(cell)));
-    let near = part.of(points).map(|p| &points.x[p]).filter(|at| (at[0] - x).abs() <= half);
-    let mut highest = [near.map(|at| at[D - 1]).fold(0.0, f64::max)];
-    halo.maximum(&mut highest);
-    highest[0]
+    let at = |p: usize| &points.x[p];
+    largest(points, part, halo, |p| if (at(p)[0] - x).abs() <= half { at(p)[D - 1] } else { 0.0 })
 }
 
 /// Largest displacement of any point of a part along the last axis, m; 0 if none has risen.
 pub fn heave<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
-    let mut largest = [part.of(points).map(|p| points.displacement(p)[D - 1]).fold(0.0, f64::max)];
-    halo.maximum(&mut largest);
-    largest[0]
+    largest(points, part, halo, |p| points.displacement(p)[D - 1])
 }
 
 /// Sums over the points of a part: the same bits however they are distributed and ordered.
@@ -80,10 +85,10 @@ fn total<const D: usize, const N: usize>(
     points: &Points<D>,
     part: &Part,
     halo: &dyn Halo,
-    term: impl Fn(usize, usize) -> f64,
+    term: impl Fn(usize, usize) -> f64 + Sync,
 ) -> [f64; N] {
-    let sums: [Exact; N] = std::array::from_fn(|k| part.of(points).map(|p| term(p, k)).collect());
-    let sums = halo.total(&sums);
+    let of_part = |p| std::array::from_fn(|k| if part.holds(points, p) { term(p, k) } else { 0.0 });
+    let sums = halo.total(&threads::sums::<N>(points.len(), of_part));
     std::array::from_fn(|k| sums[k])
 }
 

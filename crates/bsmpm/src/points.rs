@@ -10,6 +10,8 @@ use crate::boundary::Surface;
 use crate::boundary::anchor::Anchored;
 use crate::grid::{Grid, Located};
 use crate::tensor::{Symmetric, Tensor, Vector};
+use crate::threads;
+use rayon::prelude::*;
 
 /// What a column is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -305,14 +307,12 @@ impl<const D: usize> Points<D> {
             Some(cell) if grid.holds(&cell) => (grid.cell_index(&cell), self.id[p]),
             _ => (usize::MAX, self.id[p]),
         };
-        let keys: Vec<(usize, u64)> = (0..self.len()).map(key).collect();
+        let keys = threads::each(self.len(), key);
         if keys.is_sorted() {
             return;
         }
         let mut order: Vec<u32> = (0..self.len() as u32).collect();
-        order.sort_by_key(|&p| keys[p as usize]);
-        for column in self.columns() {
-            column.reorder(&order);
-        }
+        order.par_sort_by_key(|&p| keys[p as usize]);
+        self.columns().into_par_iter().for_each(|column| column.reorder(&order));
     }
 }

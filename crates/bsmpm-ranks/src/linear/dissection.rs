@@ -13,6 +13,7 @@ mod plan;
 mod reduction;
 #[cfg(test)]
 mod tests;
+mod tree;
 
 pub use factor::Precision;
 
@@ -22,8 +23,9 @@ use crate::stencil::Stencil;
 use bsmpm::grid::Grid;
 use bsmpm::nodal::Nodal;
 use factor::Factor;
-use plan::{NONE, Plan, Supernode};
-use reduction::{TreeReduction, add_packed, pack};
+use plan::Plan;
+use reduction::TreeReduction;
+use tree::{Desk, Elimination, Slate, Triangles};
 
 /// A factorisation of one rank's share of the matrix. Its memory is kept when the unknowns change, as they do in most
 /// steps of a flow.
@@ -32,10 +34,10 @@ pub struct Dissection {
     plan: Plan,
     factor: Factor, // part after part
     reduction: TreeReduction,
-    columns: Vec<f64>, // of the front in work
-    matrix: Vec<f64>,  // what it leaves
-    work: Vec<f64>,    // a vector by elimination numbers
-    scale: f64,        // a power of two that the matrix is multiplied with
+    desk: Desk,
+    slate: Slate,
+    work: Vec<f64>, // a vector by elimination numbers
+    scale: f64,     // a power of two that the matrix is multiplied with
 }
 
 impl Dissection {
@@ -85,84 +87,24 @@ impl Dissection {
     ) -> bool {
         let unit = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
         self.scale = if unit.is_normal() { 1.0 / unit } else { 1.0 };
-        let Self { plan, factor, reduction, columns, matrix, scale, .. } = self;
-        factor.restart(precision, plan.entries());
-        let mut stack = Vec::new();
-        let mut places = vec![0; plan.order.len()];
-        let mut good = true;
-        for part in &plan.parts {
-            (0..).zip(plan.front(part)).for_each(|(place, number)| places[number] = place);
-            let order = part.rim.len();
-            columns.clear();
-            columns.resize(part.own.len() * part.rows(), 0.0);
-            matrix.clear();
-            matrix.resize(order * order, 0.0);
-            take(plan, part, (stencil, &places, *scale), columns, matrix);
-            for _ in 0..part.children {
-                let (child, packed): (&Supernode, Vec<f64>) =
-                    stack.pop().expect("children come right before their parent");
-                let rim: Vec<usize> = child.rim.iter().map(|&number| places[number as usize]).collect();
-                add_packed(&packed, &rim, (columns, part.own.len()), matrix);
-            }
-            good &= front::factorise(columns, part.rows());
-            front::subtract_from_rest(columns, part.rows(), matrix);
-            factor.keep(columns, part.rows());
-            stack.push((part, pack(matrix, order)));
-        }
-        let (_, rest) = stack.pop().expect("a plan has a last part");
+        let Self { plan, factor, reduction, desk, scale, .. } = self;
+        let room = factor.restart(precision, plan.entries());
+        let (rest, good) = Elimination { plan, stencil, scale: *scale }.run(room, desk);
         reduction.factorise(link, precision, rest) && good
     }
 
     /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
     /// solution is right at all nodes of the window. Collective.
     pub fn solve(&mut self, link: &dyn Link, owned: impl Fn(usize) -> bool, rhs: &[f64], solution: &mut [f64]) {
-        let Self { plan, factor, reduction, work, scale, .. } = self;
+        let Self { plan, factor, reduction, slate, work, scale, .. } = self;
         let own = |component: usize| if owned(component) { rhs[component] * *scale } else { 0.0 };
         work.clear();
         work.extend(plan.order.iter().map(|&component| own(component as usize)));
-        let mut x = Vec::new();
-        for part in &plan.parts {
-            x.clear();
-            x.extend_from_slice(&work[part.own.clone()]);
-            x.resize(part.rows(), 0.0);
-            factor.forward(part.start, part.shape(), &mut x);
-            work[part.own.clone()].copy_from_slice(&x[..part.own.len()]);
-            part.rim.iter().zip(&x[part.own.len()..]).for_each(|(&number, taken)| work[number as usize] += taken);
-        }
+        let triangles = Triangles { plan, factor };
+        triangles.forward(work, slate);
         reduction.solve(link, &mut work[plan.eliminated()..]);
-        for part in plan.parts.iter().rev() {
-            x.clear();
-            x.extend(plan.front(part).map(|number| work[number]));
-            factor.backward(part.start, part.shape(), &mut x);
-            work[part.own.clone()].copy_from_slice(&x[..part.own.len()]);
-        }
+        triangles.backward(work, slate);
         solution.fill(0.0);
         plan.order.iter().zip(&*work).for_each(|(&component, value)| solution[component as usize] = *value);
-    }
-}
-
-/// Adds the matrix's own entries of a part: its rows against what is eliminated later; of the last part, what it
-/// shares.
-fn take<const D: usize, const C: usize>(
-    plan: &Plan,
-    part: &Supernode,
-    (stencil, places, scale): (&Stencil<D, C>, &[usize], f64),
-    columns: &mut [f64],
-    matrix: &mut [f64],
-) {
-    let (rows, order) = (part.rows(), part.rim.len());
-    // Between two bodies a separator may be without unknowns, too.
-    let last = plan.parts.last().is_some_and(|last| std::ptr::eq(last, part));
-    let numbers = if last { plan.eliminated()..plan.order.len() } else { part.own.clone() };
-    for number in numbers {
-        let place = places[number];
-        let target = if last { &mut matrix[place * order..][..order] } else { &mut columns[place * rows..][..rows] };
-        for (component, values) in stencil.row(plan.order[number] as usize) {
-            for (value, &other) in values.iter().zip(&plan.number[component..component + C]) {
-                if other != NONE && other as usize >= number {
-                    target[places[other as usize]] += value * scale;
-                }
-            }
-        }
     }
 }

@@ -78,6 +78,15 @@ impl Contributions {
         }
     }
 
+    /// Largest number that a column has for each of the nodal array, zero where none is larger.
+    pub(super) fn highest(&self) -> Vec<f64> {
+        let mut nodal = self.nodal();
+        for (&column, sums) in self.columns.iter().zip(self.sums.chunks_exact(self.column_size().max(1))) {
+            nodal[column * self.layer..].iter_mut().zip(sums).for_each(|(most, value)| *most = most.max(*value));
+        }
+        nodal
+    }
+
     /// Product with a nodal array of the window: what forces that contribute work on a displacement.
     pub fn dot(&self, nodal: &[f64]) -> Exact {
         let of = |(&column, sums): (&usize, &[f64])| {

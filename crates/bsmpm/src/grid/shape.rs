@@ -9,8 +9,10 @@ mod support;
 use super::{Grid, Located};
 use crate::error::StepError;
 use crate::tensor::Vector;
+use crate::threads;
 use merged::Merged;
 use std::ops::Range;
+use std::sync::Mutex;
 pub(crate) use support::{PointSupport, Values};
 
 /// An occupied cell with its points: the patch of section 2.1.
@@ -93,32 +95,36 @@ impl<const D: usize> Shape<D> {
             patches: Vec::new(),
             columns: Vec::new(),
             extent: (grid.column_layers(), grid.layer_nodes(), grid.nodes()),
-            rows: Vec::with_capacity(points.places().len() * 2 * D * width + BEHIND),
+            rows: vec![0.0; points.places().len() * 2 * D * width + BEHIND],
             stride: 2 * width,
             merged: None,
         };
         with_width!(width, W => shape.evaluate::<W>(grid, points))?;
-        shape.rows.extend([0.0; BEHIND]);
         shape.columns = columns(&shape.patches, grid.column_cells());
         Ok(shape)
     }
 
     fn evaluate<const W: usize>(&mut self, grid: &Grid<D>, points: &impl Located<D>) -> Result<(), StepError> {
-        for (p, x) in points.places().iter().enumerate() {
-            let outside = || StepError::Outside { id: points.id(p), x: x.as_slice().to_vec() };
-            let located = grid.locate(x).filter(|cell| grid.holds(cell)).ok_or_else(outside)?;
-            let cell = grid.cell_index(&located);
+        let x = points.places();
+        let cells = threads::each(x.len(), |p| grid.locate(&x[p]).filter(|cell| grid.holds(cell)));
+        for (p, located) in cells.iter().enumerate() {
+            let outside = || StepError::Outside { id: points.id(p), x: x[p].as_slice().to_vec() };
+            let located = located.as_ref().ok_or_else(outside)?;
+            let cell = grid.cell_index(located);
             match self.patches.last_mut() {
                 Some(patch) if patch.cell == cell => patch.points.end = p + 1,
-                _ => self.patches.push(Patch { cell, first_node: grid.first_node(&located), points: p..p + 1 }),
-            }
-            for axis in 0..D {
-                let (N, dN) = grid.axes()[axis].basis::<W>(x[axis], located[axis]);
-                self.rows.extend_from_slice(&N);
-                self.rows.extend_from_slice(&dN);
+                _ => self.patches.push(Patch { cell, first_node: grid.first_node(located), points: p..p + 1 }),
             }
         }
         debug_assert!(self.patches.is_sorted_by(|a, b| a.cell < b.cell), "points must be sorted by cell");
+        threads::change(&mut self.rows[..x.len() * 2 * D * W], 2 * D * W, |p, row| {
+            let Some(cell) = &cells[p] else { return };
+            for (axis, row) in row.chunks_exact_mut(2 * W).enumerate() {
+                let (N, dN) = grid.axes()[axis].basis::<W>(x[p][axis], cell[axis]);
+                row[..W].copy_from_slice(&N);
+                row[W..].copy_from_slice(&dN);
+            }
+        });
         Ok(())
     }
 
@@ -145,28 +151,37 @@ impl<const D: usize> Shape<D> {
             patches: self.patches.clone(),
             columns: self.columns.clone(),
             extent: self.extent,
-            rows: Vec::with_capacity(points.places().len() * D * stride + BEHIND),
+            rows: vec![0.0; points.places().len() * D * stride + BEHIND],
             stride,
             merged: None,
         };
         with_width!(lowered width, W => lower.evaluate_lower::<W>(grid, points));
-        lower.rows.extend([0.0; BEHIND]);
         lower
     }
 
     fn evaluate_lower<const W: usize>(&mut self, grid: &Grid<D>, points: &impl Located<D>) {
-        for patch in &self.patches {
-            let cell = grid.cell_at(patch.cell);
-            for x in &points.places()[patch.points.clone()] {
-                for axis in 0..D {
-                    let (N, dN) = grid.axes()[axis].basis::<W>(x[axis], cell[axis]);
-                    self.rows.extend_from_slice(&N);
-                    if self.stride > W {
-                        self.rows.extend_from_slice(&dN);
+        let (x, stride, patches) = (points.places(), self.stride, &self.patches);
+        let mut rest = &mut self.rows[..];
+        let mut rows = Vec::with_capacity(self.columns.len());
+        for column in &self.columns {
+            let (of_column, others) = std::mem::take(&mut rest).split_at_mut(column.points.len() * D * stride);
+            rest = others;
+            rows.push(Mutex::new(of_column));
+        }
+        threads::share(rows.len(), &|index| {
+            let of_column = &mut **rows[index].lock().expect("the column's only thread");
+            let mut rows = of_column.chunks_exact_mut(stride);
+            for patch in &patches[self.columns[index].patches.clone()] {
+                let cell = grid.cell_at(patch.cell);
+                for x in &x[patch.points.clone()] {
+                    for (axis, row) in rows.by_ref().take(D).enumerate() {
+                        let (N, dN) = grid.axes()[axis].basis::<W>(x[axis], cell[axis]);
+                        row[..W].copy_from_slice(&N);
+                        row[W..].copy_from_slice(&dN[..stride - W]);
                     }
                 }
             }
-        }
+        });
     }
 
     /// Functions per axis, q + 1.

@@ -14,7 +14,8 @@ use crate::kinematics::{Kinematics, Slope};
 use crate::lanes;
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
-use columns::{apart, joined, nothing, share, unfilled};
+use crate::threads::{self, Blank, share};
+use columns::{apart, nothing, places};
 use patch::{Divergence, Gradients, PatchSums};
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -51,31 +52,36 @@ pub fn to_nodes_grouped<const D: usize, const C: usize>(
     }))
 }
 
-/// Largest value among the points of a group that a node sees: out_I = max(out_I, value_p) over those with N_Ip > 0.
+/// Largest value among the points of a group that a node sees, those with N_Ip > 0; zero where none is larger.
 pub fn largest_to_nodes<const D: usize>(
     shape: &Shape<D>,
     grouped: Grouped<'_>,
-    out: &mut [f64],
-    value: impl Fn(usize) -> f64,
-) {
+    value: impl Fn(usize) -> f64 + Sync,
+) -> Vec<f64> {
     let count = grouped.count();
-    with_width!(lowered shape.width(), W => {
-        for patch in shape.patches() {
+    let mut largest = nothing(shape, count);
+    let columns = apart(&mut largest);
+    with_width!(lowered shape.width(), W => share(columns.len(), &|index| {
+        let (column, out) = (&shape.columns()[index], &mut *columns[index].lock().expect("the column's only thread"));
+        let first = column.column * shape.extent().1;
+        for patch in &shape.patches()[column.patches.clone()] {
             for p in patch.points.clone() {
                 let (support, value) = (shape.values::<W>(p), value(p));
                 for (k, offset) in shape.offsets().iter().enumerate() {
                     if support.value(k) > 0.0 {
-                        let at_node = &mut out[(patch.first_node + offset) * count + grouped.of(p)];
+                        let at_node = &mut out[(patch.first_node - first + offset) * count + grouped.of(p)];
                         *at_node = at_node.max(value);
                     }
                 }
             }
         }
-    });
+    }));
+    drop(columns);
+    largest.highest()
 }
 
 /// Gather with shape functions: what `found` makes of value_p = sum_I N_Ip nodal_I (Eq. 1), for every point.
-pub fn to_points<const D: usize, const C: usize, T: Send>(
+pub fn to_points<const D: usize, const C: usize, T: Blank>(
     shape: &Shape<D>,
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
@@ -84,7 +90,7 @@ pub fn to_points<const D: usize, const C: usize, T: Send>(
 }
 
 /// [`to_points`] from the nodal values of each point's group.
-pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
+pub fn to_points_grouped<const D: usize, const C: usize, T: Blank>(
     shape: &Shape<D>,
     grouped: Grouped<'_>,
     nodal: &[f64],
@@ -111,7 +117,7 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Send>(
 
 /// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point; the
 /// points are at `x`, m.
-pub fn gradients<K: Kinematics<D>, const D: usize, T: Send>(
+pub fn gradients<K: Kinematics<D>, const D: usize, T: Blank>(
     (shape, x): (&Shape<D>, &[Vector<D>]),
     u: &[f64],
     found: impl Fn(usize, K::Gradient) -> T + Sync,
@@ -218,7 +224,7 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
 }
 
 /// What the patches leave at their points, in the order of the points.
-fn at_points<const D: usize, S, T: Send>(
+fn at_points<const D: usize, S, T: Blank>(
     shape: &Shape<D>,
     scratch: impl Fn() -> S + Sync,
     work: impl Fn(usize, &mut S, &mut Vec<T>) + Sync,
@@ -228,14 +234,21 @@ fn at_points<const D: usize, S, T: Send>(
         (0..shape.patches().len()).for_each(|patch| work(patch, &mut scratch, &mut out));
         return out;
     }
-    let parts = unfilled(shape.columns().len());
-    share(parts.len(), &|index| {
-        let column = &shape.columns()[index];
-        let (mut scratch, mut out) = (scratch(), Vec::with_capacity(column.points.len()));
-        column.patches.clone().for_each(|patch| work(patch, &mut scratch, &mut out));
-        *parts[index].lock().expect("the column's only thread") = out;
+    let mut out = threads::each(shape.len(), |_| T::blank());
+    let columns = places(shape, &mut out);
+    share(columns.len(), &|index| {
+        let mut places = &mut **columns[index].lock().expect("the column's only thread");
+        let (mut scratch, mut found) = (scratch(), Vec::new());
+        for patch in shape.columns()[index].patches.clone() {
+            found.clear();
+            work(patch, &mut scratch, &mut found);
+            let (of_patch, others) = places.split_at_mut(found.len());
+            of_patch.iter_mut().zip(found.drain(..)).for_each(|(place, value)| *place = value);
+            places = others;
+        }
     });
-    joined(parts)
+    drop(columns);
+    out
 }
 
 /// Fills a block with the numbers of a patch's nodes, or of its functions where these are merged.

@@ -25,7 +25,8 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
     let strands: usize = grid.axes()[1..D - 1].iter().map(|axis| axis.cells()).product();
     let columns = grid.axes()[0].cells();
     let mut held: Vec<CellPoints> = vec![CellPoints::new(); columns * strands];
-    for p in 0..points.len() {
+    let near = [row, row + 1].map(|line| grid.axes()[D - 1].breakpoint(line));
+    for p in (0..points.len()).filter(|&p| (near[0]..=near[1]).contains(&points.x[p][D - 1])) {
         if let Some(cell) = grid.locate(&points.x[p]).filter(|cell| cell[D - 1] == row) {
             let strand = (1..D - 1).fold(0, |strand, axis| strand * grid.axes()[axis].cells() + cell[axis]);
             let volume = points.volume[p] * points.F.at(p).determinant();

@@ -5,12 +5,12 @@
 
 use crate::error::StepError;
 use crate::exact::Exact;
-use crate::grid::shape::Patch;
 use crate::grid::{Contributions, Grid, Shape, transfer};
 use crate::model::Weighting;
 use crate::parallel::{Halo, agreed};
 use crate::points::Points;
 use crate::tensor::Vector;
+use crate::threads;
 use nalgebra::{Matrix4, Vector4};
 
 /// Root mean squares of a stress about its smooth parts.
@@ -97,18 +97,23 @@ impl Squares {
         let counts = |x: &Vector<D>| {
             window.is_none_or(|[lower, upper]| (0..D).all(|axis| (lower[axis]..=upper[axis]).contains(&x[axis])))
         };
-        let mut sums = [const { Exact::ZERO }; 4];
-        for (patch, plane) in shape.patches().iter().zip(&planes) {
-            let cell = grid.cell_at(patch.cell);
-            for p in patch.points.clone().filter(|&p| counts(&points.x[p])) {
-                let terms = terms(grid, &cell, &points.x[p]);
-                let on_plane: f64 = plane.iter().zip(&terms).map(|(a, b)| a * b).sum();
-                sums[0].add(1.0);
-                sums[1].add(stress(p).abs());
-                sums[2].add((stress(p) - average[p]).powi(2));
-                sums[3].add((stress(p) - on_plane).powi(2));
+        let of_column = |column: usize| {
+            let mut sums = [const { Exact::ZERO }; 4];
+            for number in shape.columns()[column].patches.clone() {
+                let patch = &shape.patches()[number];
+                let cell = grid.cell_at(patch.cell);
+                for p in patch.points.clone().filter(|&p| counts(&points.x[p])) {
+                    let terms = terms(grid, &cell, &points.x[p]);
+                    let on_plane: f64 = planes[number].iter().zip(&terms).map(|(a, b)| a * b).sum();
+                    sums[0].add(1.0);
+                    sums[1].add(stress(p).abs());
+                    sums[2].add((stress(p) - average[p]).powi(2));
+                    sums[3].add((stress(p) - on_plane).powi(2));
+                }
             }
-        }
+            sums
+        };
+        let sums = threads::total(shape.columns().len(), of_column);
         let sums = halo.total(&sums);
         let [count, absolute, average, plane] = [0, 1, 2, 3].map(|k| sums[k]);
         let mean = |sum: f64| if count > 0.0 { sum / count } else { 0.0 };
@@ -161,12 +166,17 @@ fn planes<const D: usize>(
 ) -> Vec<[f64; MOST]> {
     let middle = grid.order() / 2;
     let mut sums = Contributions::none(grid, WIDTH, Vec::new());
-    for patch in shape.patches() {
+    let moments = threads::each(shape.patches().len(), |number| {
+        let patch = &shape.patches()[number];
         let own = grid.cell_at(patch.cell);
         let mut moments = [0.0; WIDTH];
         for p in patch.points.clone() {
             add_moments(&terms(grid, &own, &points.x[p]), stress(p), &mut moments);
         }
+        moments
+    });
+    for (patch, moments) in shape.patches().iter().zip(&moments) {
+        let own = grid.cell_at(patch.cell);
         let sums = sums.patch(patch.first_node);
         for offset in shape.offsets() {
             let of_node = grid.node_at(patch.first_node + offset);
@@ -175,16 +185,16 @@ fn planes<const D: usize>(
             if !(0..D).all(|axis| grid.axes()[axis].has_length(cell[axis])) {
                 continue;
             }
-            add_moved(&moments, &between(grid, (&own, &cell)), &mut sums[offset * WIDTH..(offset + 1) * WIDTH]);
+            add_moved(moments, &between(grid, (&own, &cell)), &mut sums[offset * WIDTH..(offset + 1) * WIDTH]);
         }
     }
     let sums = halo.sum(&sums);
     let middle_offset = shape.offsets()[(0..D).fold(0, |k, _| k * shape.width() + middle)];
-    let plane = |patch: &Patch| {
-        let node = patch.first_node + middle_offset;
+    let plane = |number: usize| {
+        let node = shape.patches()[number].first_node + middle_offset;
         fit::<D>(&sums[node * WIDTH..(node + 1) * WIDTH])
     };
-    shape.patches().iter().map(plane).collect()
+    threads::each(shape.patches().len(), plane)
 }
 
 /// Scale and shift by which the [`terms`] of one cell become those of another: t' = scale t + shift.

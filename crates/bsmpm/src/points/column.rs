@@ -17,7 +17,7 @@ pub enum Number {
 }
 
 /// One array of the points, whatever it holds.
-pub trait Column {
+pub trait Column: Send {
     /// What its numbers are.
     fn number(&self) -> Number;
     /// Numbers of one row.
@@ -184,7 +184,7 @@ impl<const D: usize, T: MessageRow + Components> Column for Packed<D, T> {
 }
 
 /// A row that travels between ranks bit by bit.
-trait MessageRow: Copy {
+trait MessageRow: Copy + Send {
     const NUMBER: Number;
     const WIDTH: usize;
     const BYTES: usize;

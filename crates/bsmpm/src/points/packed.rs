@@ -2,10 +2,12 @@
 //! with its normal. Computation knows whole tensors only.
 
 use crate::tensor::{Symmetric, Tensor};
+use crate::threads;
 use std::marker::PhantomData;
+use std::sync::Mutex;
 
 /// Numbers that a whole tensor consists of.
-pub trait Components: Copy {
+pub trait Components: Copy + Send {
     /// Places of those that a plane and its normal have, ascending.
     const IN_PLANE: &'static [usize];
     /// Places of all.
@@ -96,15 +98,31 @@ impl<const D: usize, T: Components> Packed<D, T> {
     /// The tensor of point `p`.
     #[inline(always)]
     pub fn at(&self, p: usize) -> T {
-        T::with(Self::PLACES, &self.numbers[p * Self::STRIDE..][..Self::STRIDE])
+        Self::read(&self.numbers, p)
+    }
+
+    #[inline(always)]
+    fn read(numbers: &[f64], p: usize) -> T {
+        T::with(Self::PLACES, &numbers[p * Self::STRIDE..][..Self::STRIDE])
+    }
+
+    #[inline(always)]
+    fn keep(numbers: &mut [f64], p: usize, tensor: T) {
+        debug_assert!(Self::tells_all(&tensor), "of {:?} not all is held", tensor.numbers());
+        let row = &mut numbers[p * Self::STRIDE..][..Self::STRIDE];
+        row.iter_mut().zip(Self::PLACES).for_each(|(number, &place)| *number = tensor.numbers()[place]);
     }
 
     /// Gives point `p` the tensor `tensor`, which must be zero where nothing is held.
     #[inline(always)]
     pub fn set(&mut self, p: usize, tensor: T) {
-        debug_assert!(Self::tells_all(&tensor), "of {:?} not all is held", tensor.numbers());
-        let row = &mut self.numbers[p * Self::STRIDE..][..Self::STRIDE];
-        row.iter_mut().zip(Self::PLACES).for_each(|(number, &place)| *number = tensor.numbers()[place]);
+        Self::keep(&mut self.numbers, p, tensor);
+    }
+
+    /// The tensors by chunks of points, each for a thread at a time.
+    pub fn apart(&mut self) -> Vec<Mutex<PackedChunk<'_, D, T>>> {
+        let chunks = self.numbers.chunks_mut(Self::STRIDE * threads::CHUNK);
+        chunks.map(|numbers| Mutex::new(PackedChunk { numbers, whole: PhantomData })).collect()
     }
 
     /// Adds a tensor for a further point, which must be zero where nothing is held.
@@ -122,6 +140,27 @@ impl<const D: usize, T: Components> Packed<D, T> {
     /// All tensors, point by point.
     pub fn iter(&self) -> impl Iterator<Item = T> {
         (0..self.len()).map(|p| self.at(p))
+    }
+}
+
+/// Some tensors, one after another.
+#[derive(Debug)]
+pub struct PackedChunk<'a, const D: usize, T> {
+    numbers: &'a mut [f64],
+    whole: PhantomData<T>,
+}
+
+impl<const D: usize, T: Components> PackedChunk<'_, D, T> {
+    /// The tensor `k` of them.
+    #[inline(always)]
+    pub fn at(&self, k: usize) -> T {
+        Packed::<D, T>::read(self.numbers, k)
+    }
+
+    /// Puts a tensor in the place `k`, which must be zero where nothing is held.
+    #[inline(always)]
+    pub fn set(&mut self, k: usize, tensor: T) {
+        Packed::<D, T>::keep(self.numbers, k, tensor);
     }
 }
 

@@ -11,7 +11,7 @@ use crate::error::StepError;
 use crate::exact::Exact;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
-use crate::material::{Response, Separation};
+use crate::material::{MaterialError, Response, Separation};
 use crate::model::Model;
 use crate::parallel::{Halo, agreed};
 use crate::points::{Points, Rows};
@@ -23,8 +23,10 @@ use crate::step::nodes::Nodes;
 use crate::step::smooth;
 use crate::step::trial::Trial;
 use crate::tensor::{Symmetric, Vector};
+use crate::threads;
 use crate::water::saved;
 use rayon::prelude::*;
+use std::sync::Mutex;
 
 /// Refuses a displacement that takes a point out of the grid, but through an outlet; there, too, one that a strip,
 /// load or drain is anchored to, and the last one. Agreed by all ranks.
@@ -75,7 +77,7 @@ pub struct Committed {
 }
 
 /// What is kept of the constitution's answer to the converged step at a point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Answer {
     /// Pa  Kirchhoff stress
     pub tau: Symmetric,
@@ -116,19 +118,26 @@ pub fn answers<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<(Vec<Answer>, Option<Rows>), StepError> {
     let mut state = points.state.clone();
-    let respond = |p: usize| trial.respond(model, points, p);
-    let kept = |p: usize, response: &Response| Answer::of(response, points.gap_of(p));
-    // Collected as they come, and only then taken apart: one array, whatever the number of threads.
-    let answers: Vec<_> = match &mut state {
-        Some(state) => {
-            let after = |(p, row)| respond(p).map(|response| (response.advance(row), kept(p, &response)).1);
-            state.par_rows_mut().enumerate().map(after).collect()
+    let refused = Mutex::new(None::<(usize, MaterialError)>);
+    let kept = |p: usize, row: Option<&mut [f64]>| match trial.respond(model, points, p) {
+        Ok(response) => {
+            row.into_iter().for_each(|row| response.advance(row));
+            Answer::of(&response, points.gap_of(p))
         }
-        None => (0..points.len()).into_par_iter().map(|p| respond(p).map(|response| kept(p, &response))).collect(),
+        Err(source) => {
+            let mut refused = refused.lock().expect("no thread panicked");
+            if refused.as_ref().is_none_or(|(first, _)| p < *first) {
+                *refused = Some((p, source));
+            }
+            Answer::default()
+        }
+    };
+    let answers: Vec<Answer> = match &mut state {
+        Some(state) => state.par_rows_mut().enumerate().map(|(p, row)| kept(p, Some(row))).collect(),
+        None => threads::each(points.len(), |p| kept(p, None)),
     };
     let failed = |(p, source)| StepError::Material { id: points.id[p], source };
-    let answers: Result<Vec<_>, _> =
-        answers.into_iter().enumerate().map(|(p, answer)| answer.map_err(|source| failed((p, source)))).collect();
+    let answers = refused.into_inner().expect("no thread panicked").map_or(Ok(answers), |point| Err(failed(point)));
     Ok((agreed(halo, answers, StepError::OtherRank)?, state))
 }
 
@@ -145,25 +154,13 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         move_with_inertia((shape, model.mass), inertia, &u, points);
     }
     let du = transfer::to_points::<D, D, _>(shape, &u, |_, du| Vector::from(du));
-    let mut advance = [du.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt()];
+    let mut advance = [threads::largest(du.len(), |p| du[p].norm_squared()).sqrt()];
     halo.maximum(&mut advance);
     let beside_fixed = nodes.inertia.as_ref().and_then(|inertia| beside_fixed(model, points, (&du, inertia.dt), halo));
-    for (p, du) in du.into_iter().enumerate() {
-        points.x[p] += du; // (11a)
-        points.u[p] += du; // (11b)
-    }
-    if model.stabilisation.averages() {
-        points.dilation = Some((0..points.len()).map(|p| trial.dilation(model, points, p)).collect());
-    }
+    threads::change(&mut points.x, 1, |p, x| x[0] += du[p]); // (11a)
+    threads::change(&mut points.u, 1, |p, u| u[0] += du[p]); // (11b)
     points.state = state;
-    for (p, answer) in answers.iter().enumerate() {
-        let F = trial.dF(p) * points.F.at(p);
-        points.F.set(p, F);
-        let tau = trial.damped(model, points, p, answer.tau);
-        points.sigma.set(p, tau.scaled(1.0 / (F.determinant() * points.dilation_of(p))));
-        points.b_e.set(p, answer.b_e);
-        points.eps_p[p] += answer.plastic_increment;
-    }
+    keep(model, &trial, &answers, points);
     let content = nodes.pores.as_ref().map_or(0.0, |pores| saved::save(model, pores, &trial, &pressures, points, halo));
     let smoothed = match model.stabilisation {
         Stabilisation::ModifiedFBar => {
@@ -171,13 +168,47 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
             1.0
         }
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
-            let flow: Vec<smooth::PlasticFlow> = answers.iter().map(|answer| answer.flow).collect();
+            let flow = threads::each(answers.len(), |p| answers[p].flow);
             smooth::filter_dilation(model, (shape, nodes), points, &flow, halo)
         }
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
     };
     points.gap = gaps(model, points, &answers);
     Committed { u, advance: advance[0], smoothed, content, beside_fixed }
+}
+
+/// Deformation, stress, elastic and plastic strain of every point.
+fn keep<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    trial: &Trial<K, D>,
+    answers: &[Answer],
+    points: &mut Points<D>,
+) {
+    let averages = model.stabilisation.averages();
+    let dilation = averages.then(|| threads::each(points.len(), |p| trial.dilation(model, points, p)));
+    let damped = (!model.damping.is_empty())
+        .then(|| threads::each(points.len(), |p| trial.damped(model, points, p, answers[p].tau)));
+    let [mut sigma, mut b_e] = [&mut points.sigma, &mut points.b_e].map(std::mem::take);
+    let (mut F, mut eps_p) = (std::mem::take(&mut points.F), std::mem::take(&mut points.eps_p));
+    let (sigmas, elastic, Fs) = (sigma.apart(), b_e.apart(), F.apart());
+    let plastic = threads::apart(&mut eps_p, 1);
+    threads::by_chunks(points.len(), &|chunk, range| {
+        let only = "the chunk's only thread";
+        let (mut sigma, mut b_e) = (sigmas[chunk].lock().expect(only), elastic[chunk].lock().expect(only));
+        let (mut F, mut eps_p) = (Fs[chunk].lock().expect(only), plastic[chunk].lock().expect(only));
+        for (k, p) in range.enumerate() {
+            let (answer, deformed) = (&answers[p], trial.dF(p) * F.at(k));
+            let tau = damped.as_ref().map_or(answer.tau, |damped| damped[p]);
+            let dilation = dilation.as_ref().map_or_else(|| points.dilation_of(p), |dilation| dilation[p]);
+            sigma.set(k, tau.scaled(1.0 / (deformed.determinant() * dilation)));
+            F.set(k, deformed);
+            b_e.set(k, answer.b_e);
+            eps_p[k] += answer.plastic_increment;
+        }
+    });
+    drop((sigmas, elastic, Fs, plastic));
+    (points.sigma, points.b_e, points.F, points.eps_p) = (sigma, b_e, F, eps_p);
+    points.dilation = dilation.or(points.dilation.take());
 }
 
 /// Kinetic energy, J, that points within a cell of a face which holds all components have by their velocities, beyond
@@ -225,19 +256,18 @@ fn move_with_inertia<const D: usize>(
         let gain = |c: usize| inertia.velocity(c, u[c]) - inertia.v[c] + inertia.blow.get(c).copied().unwrap_or(0.0);
         let gained: Vec<f64> = (0..u.len()).map(gain).collect();
         let gained = transfer::to_points::<D, D, _>(shape, &gained, |_, v| Vector::from(v));
-        motion.v.iter_mut().zip(gained).for_each(|(v, gained)| *v += gained);
+        threads::change(&mut motion.v, 1, |p, v| v[0] += gained[p]);
     }
     if matrix == MassMatrix::Lumped && !inertia.stopped.is_empty() {
         let blows: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.blow_of(c, u)).collect();
         let blows = transfer::to_points::<D, D, _>(shape, &blows, |_, v| Vector::from(v));
-        motion.v.iter_mut().zip(blows).for_each(|(v, blow)| *v += blow);
+        threads::change(&mut motion.v, 1, |p, v| v[0] += blows[p]);
     }
     let a: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.acceleration(c, u)).collect();
     let a = transfer::to_points::<D, D, _>(shape, &a, |_, a| Vector::from(a));
-    for (p, a) in a.into_iter().enumerate() {
-        if matrix == MassMatrix::Lumped {
-            motion.v[p] += motion.a[p].zip_map(&a, |before, after| inertia.newmark.gained(inertia.dt, before, after));
-        }
-        motion.a[p] = a;
+    if matrix == MassMatrix::Lumped {
+        let gained = |before, after| inertia.newmark.gained(inertia.dt, before, after);
+        threads::change(&mut motion.v, 1, |p, v| v[0] += motion.a[p].zip_map(&a[p], gained));
     }
+    motion.a = a;
 }

@@ -14,6 +14,7 @@ use crate::parallel::Halo;
 use crate::points::{Packed, Points};
 use crate::step::nodes::Nodes;
 use crate::tensor::Symmetric;
+use crate::threads;
 
 /// Length (m) along which so many passes of S smooth on splines of degree `order` over cells of size `h` (m):
 /// `h sqrt(passes (q+1)/6)`; see the module.
@@ -41,7 +42,7 @@ pub fn average_b_e<K, const D: usize>(
 }
 
 /// What the filter of consistent F-bar needs of a point's return.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PlasticFlow {
     /// -  sqrt(2/3) |eps_trial - eps^e|, the plastic strain of the step with its dilation
     plastic: f64,
@@ -77,14 +78,13 @@ pub fn filter_dilation<K, const D: usize>(
     flow: &[PlasticFlow],
     halo: &dyn Halo,
 ) -> f64 {
-    let mut flowing = [flow.iter().map(|flow| flow.plastic).fold(0.0, f64::max)];
+    let mut flowing = [threads::largest(flow.len(), |p| flow[p].plastic)];
     halo.maximum(&mut flowing);
     if flowing[0] == 0.0 {
         return 0.0;
     }
     let grouped = model.grouped(points);
-    let mut chi = vec![0.0; nodes.weight.len() * grouped.count()];
-    transfer::largest_to_nodes(shape, grouped, &mut chi, |p| flow[p].plastic);
+    let mut chi = transfer::largest_to_nodes(shape, grouped, |p| flow[p].plastic);
     halo.max(&mut chi, grouped.count());
     let share = transfer::to_points_grouped(shape, grouped, &chi, |_, [x]| -(-x / RENEWING).exp_m1());
     let b_e = &points.b_e;
@@ -93,15 +93,20 @@ pub fn filter_dilation<K, const D: usize>(
         (b_e.at(p).scaled((2.0 / 3.0 * change).exp()), theta, change)
     };
     let filtered = nodes.average(model, (shape, points), halo, |p| [share[p], flow[p].dilation], filter);
-    let (mut shares, mut count) = (Exact::ZERO, Exact::ZERO);
-    for (p, (b_e, theta, change)) in filtered.into_iter().enumerate() {
-        points.b_e.set(p, b_e);
-        if let Some(dilation) = &mut points.dilation {
-            dilation[p] *= change.exp();
+    let (elastic, dilations) = (points.b_e.apart(), points.dilation.as_mut().map(|all| threads::apart(all, 1)));
+    let shares = threads::of_chunks(filtered.len(), |chunk, range| {
+        let only = "the chunk's only thread";
+        let mut b_e = elastic[chunk].lock().expect(only);
+        let mut dilation = dilations.as_ref().map(|all| all[chunk].lock().expect(only));
+        let mut shares = Exact::ZERO;
+        for (k, (filtered, theta, change)) in filtered[range].iter().enumerate() {
+            b_e.set(k, *filtered);
+            dilation.iter_mut().for_each(|dilation| dilation[k] *= change.exp());
+            shares.add(*theta);
         }
-        shares.add(theta);
-        count.add(1.0);
-    }
+        [shares]
+    });
+    let ([shares], count) = (threads::added(shares), std::iter::once(filtered.len() as f64).collect());
     let sums = halo.total(&[shares, count]);
     sums[0] / sums[1]
 }

@@ -21,6 +21,7 @@ pub struct LinearisedWater<'a, const D: usize> {
 }
 
 /// What changes at a point that water flows through.
+#[derive(Clone)]
 struct Change<const D: usize> {
     inverse: Tensor, // dF^-1
     J: f64,

@@ -138,6 +138,7 @@ fn retained<K, const D: usize>(model: &Model<K, D>, material: u16, p: f64) -> Re
 }
 
 /// What water does at a point under a trial.
+#[derive(Clone)]
 pub struct Flowing<const D: usize> {
     /// -  pores per reference volume, by J-bar: those that the skeleton's stress has felt
     pub pores: f64,

@@ -25,6 +25,15 @@ pub enum Factor {
     Double(Vec<f64>),
 }
 
+/// Room for the columns of some fronts that follow each other.
+#[derive(Debug)]
+pub enum Room<'a> {
+    /// of single precision
+    Single(&'a mut [f32]),
+    /// of double precision
+    Double(&'a mut [f64]),
+}
+
 impl Default for Factor {
     fn default() -> Self {
         Self::Single(Vec::new())
@@ -32,25 +41,16 @@ impl Default for Factor {
 }
 
 impl Factor {
-    /// Forgets its columns, and makes room for `entries` numbers; their memory is kept if the precision is.
-    pub fn restart(&mut self, precision: Precision, entries: usize) {
+    /// Room for `entries` numbers, in place of those that it has; their memory is kept if the precision is.
+    pub fn restart(&mut self, precision: Precision, entries: usize) -> Room<'_> {
         match (precision, &mut *self) {
-            (Precision::Single, Self::Single(numbers)) => numbers.clear(),
-            (Precision::Double, Self::Double(numbers)) => numbers.clear(),
-            (Precision::Single, _) => *self = Self::Single(Vec::new()),
-            (Precision::Double, _) => *self = Self::Double(Vec::new()),
+            (Precision::Single, Self::Double(_)) => *self = Self::Single(Vec::new()),
+            (Precision::Double, Self::Single(_)) => *self = Self::Double(Vec::new()),
+            _ => {}
         }
         match self {
-            Self::Single(numbers) => numbers.reserve_exact(entries),
-            Self::Double(numbers) => numbers.reserve_exact(entries),
-        }
-    }
-
-    /// Adds the factorised `columns` of a front, `rows` long.
-    pub fn keep(&mut self, columns: &[f64], rows: usize) {
-        match self {
-            Self::Single(numbers) => keep(columns, rows, numbers),
-            Self::Double(numbers) => keep(columns, rows, numbers),
+            Self::Single(numbers) => Room::Single(resized(numbers, entries)),
+            Self::Double(numbers) => Room::Double(resized(numbers, entries)),
         }
     }
 
@@ -72,6 +72,40 @@ impl Factor {
             Self::Double(numbers) => backward(&numbers[range], (rows, columns), x),
         }
     }
+}
+
+impl<'a> Room<'a> {
+    /// The first `entries` numbers, and the others.
+    pub fn split_at(self, entries: usize) -> (Self, Self) {
+        match self {
+            Self::Single(numbers) => {
+                let (first, rest) = numbers.split_at_mut(entries);
+                (Self::Single(first), Self::Single(rest))
+            }
+            Self::Double(numbers) => {
+                let (first, rest) = numbers.split_at_mut(entries);
+                (Self::Double(first), Self::Double(rest))
+            }
+        }
+    }
+
+    /// Keeps the factorised `columns` of a front, `rows` long, from the number `start` on.
+    pub fn keep(&mut self, start: usize, columns: &[f64], rows: usize) {
+        match self {
+            Self::Single(numbers) => keep(columns, rows, &mut numbers[start..]),
+            Self::Double(numbers) => keep(columns, rows, &mut numbers[start..]),
+        }
+    }
+}
+
+/// So many numbers, whatever they are.
+fn resized<T: Scalar>(numbers: &mut Vec<T>, entries: usize) -> &mut [T] {
+    if numbers.len() < entries {
+        numbers.clear();
+        numbers.reserve_exact(entries);
+        numbers.resize(entries, T::of(0.0));
+    }
+    &mut numbers[..entries]
 }
 
 /// Numbers that are kept of `columns` of a front of order `rows`.
@@ -107,10 +141,12 @@ impl Scalar for f64 {
 
 /// Groups of columns one after another, and of each its rows from the first diagonal entry on; what stands above the
 /// diagonal is copied, too, and not read.
-fn keep<T: Scalar>(columns: &[f64], rows: usize, numbers: &mut Vec<T>) {
+fn keep<T: Scalar>(columns: &[f64], rows: usize, numbers: &mut [T]) {
+    let mut numbers = numbers.iter_mut();
     for (group, columns) in columns.chunks(GROUP * rows.max(1)).enumerate() {
         for row in GROUP * group..rows {
-            numbers.extend(columns[row..].iter().step_by(rows).map(|&value| T::of(value)));
+            let values = columns[row..].iter().step_by(rows);
+            values.zip(&mut numbers).for_each(|(&value, number)| *number = T::of(value));
         }
     }
 }

@@ -15,7 +15,7 @@ const LEAF: usize = 64;
 pub const NONE: u32 = u32::MAX;
 
 /// Unknowns that are eliminated together, a part of the order.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Supernode {
     /// elimination numbers
     pub own: Range<usize>,
@@ -23,6 +23,10 @@ pub struct Supernode {
     pub rim: Vec<u32>,
     /// parts right before this one (and theirs) that hand their rest to it
     pub children: usize,
+    /// the first part of those below it, itself if it has no children
+    pub first: usize,
+    /// places of the rim in the front of the part that it hands its rest to
+    pub above: Vec<usize>,
     /// where its columns begin among the numbers of the factor
     pub start: usize,
 }
@@ -88,8 +92,51 @@ impl Plan {
         let eliminated = plan.parts.last().map_or(0, |part| part.own.end);
         let start = plan.parts.last().map_or(0, Supernode::end);
         let rim = (eliminated as u32..plan.order.len() as u32).collect();
-        plan.parts.push(Supernode { own: eliminated..eliminated, rim, children, start });
+        let above = Vec::new();
+        plan.parts.push(Supernode { own: eliminated..eliminated, rim, children, first: 0, above, start });
+        plan.hang();
         plan
+    }
+
+    /// Hangs every part below the one that it hands its rest to.
+    fn hang(&mut self) {
+        for parent in 0..self.parts.len() {
+            let children: Vec<usize> = self.children(parent).collect();
+            self.parts[parent].first = children.last().map_or(parent, |&child| self.parts[child].first);
+            let Supernode { own, rim, .. } = &self.parts[parent];
+            let (own, rim) = (own.clone(), rim.clone());
+            for child in children {
+                let mut at = 0;
+                let place = |&number: &u32| {
+                    if own.contains(&(number as usize)) {
+                        return number as usize - own.start;
+                    }
+                    at += rim[at..].iter().position(|&other| other == number).expect("a rim lies in the front above");
+                    own.len() + at
+                };
+                self.parts[child].above = self.parts[child].rim.iter().map(place).collect();
+            }
+        }
+    }
+
+    /// The parts that hand their rest to a part, the last one first.
+    pub fn children(&self, parent: usize) -> impl Iterator<Item = usize> + use<'_> {
+        let mut next = parent;
+        (0..self.parts[parent].children).map(move |_| {
+            let child = next - 1;
+            next = self.parts[child].first;
+            child
+        })
+    }
+
+    /// Elimination numbers of a part and of all below it.
+    pub fn numbers_to(&self, root: usize) -> Range<usize> {
+        self.parts[self.parts[root].first].own.start..self.parts[root].own.end
+    }
+
+    /// Where the columns of a part and of all below it stand among the numbers of the factor.
+    pub fn columns_to(&self, root: usize) -> Range<usize> {
+        self.parts[self.parts[root].first].start..self.parts[root].end()
     }
 
     /// Numbers of the factor, all parts together.
@@ -185,7 +232,7 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
     fn part(&mut self, components: Vec<usize>, region: [Range<usize>; D], children: usize) {
         let start = self.plan.order.len();
         self.number(components);
-        self.plan.parts.push(Supernode { own: start..self.plan.order.len(), rim: Vec::new(), children, start: 0 });
+        self.plan.parts.push(Supernode { own: start..self.plan.order.len(), children, ..Supernode::default() });
         self.boxes.push(region);
     }
 

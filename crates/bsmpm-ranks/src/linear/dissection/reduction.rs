@@ -165,8 +165,7 @@ impl Joint {
         }
         let good = front::factorise(&mut columns, self.rows);
         front::subtract_from_rest(&columns, self.rows, &mut rest);
-        self.factor.restart(precision, factor::entries(self.rows, self.own));
-        self.factor.keep(&columns, self.rows);
+        self.factor.restart(precision, factor::entries(self.rows, self.own)).keep(0, &columns, self.rows);
         (good, pack(&rest, order))
     }
 

@@ -29,8 +29,7 @@ fn a_front_is_factorised_and_solved_as_a_dense_matrix() {
         let b = DVector::from_fn(rows, |i, _| noise(i) - 0.3);
         let mut x = b.clone();
         let mut kept = Factor::default();
-        kept.restart(Precision::Double, factor::entries(rows, own));
-        kept.keep(columns.as_slice(), rows);
+        kept.restart(Precision::Double, factor::entries(rows, own)).keep(0, columns.as_slice(), rows);
         kept.forward(0, (rows, own), x.as_mut_slice());
         let mut below = x.rows_mut(own, rows - own);
         if own < rows {
@@ -235,4 +234,15 @@ fn solutions_repeat_to_the_bit_however_late_messages_are_and_agree_where_slabs_m
         let common = (own.end - next.start) * layer;
         assert_eq!(first[rank][first[rank].len() - common..], first[rank + 1][..common]);
     }
+}
+
+#[test]
+fn threads_find_the_solution_of_one_thread_to_the_bit() {
+    let system = System::<2>::new([60, 40], 2, &[0, 60]);
+    let counts = std::array::from_fn(|axis| system.grid.axes()[axis].functions());
+    let plan = Plan::new::<2, 2>(counts, 2, &counts.map(|count| 0..count), &system.free());
+    let shared = (0..plan.parts.len()).filter(|&root| plan.columns_to(root).len() >= super::tree::WORTH).count();
+    assert!(shared > 8, "only {shared} of {} subtrees are shared", plan.parts.len());
+    let one = system.on_threads(1);
+    assert!([2, 5].iter().all(|&threads| system.on_threads(threads) == one));
 }

@@ -128,6 +128,12 @@ impl<const C: usize> System<C> {
         matrix.cholesky().unwrap().solve(&DVector::from_iterator(size, rhs)).as_slice().to_vec()
     }
 
+    /// What the only rank finds with so many threads.
+    pub fn on_threads(&self, threads: usize) -> Vec<f64> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| self.solution((0, Precision::Single), &wires(1, 1).remove(0)))
+    }
+
     /// What `rank` finds at the nodes of its window, after a first factorisation of another matrix in the other
     /// precision.
     fn solution(&self, (rank, precision): (usize, Precision), wire: &Wire) -> Vec<f64> {

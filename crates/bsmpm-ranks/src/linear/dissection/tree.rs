@@ -1,0 +1,243 @@
+//! Elimination and solution over the tree of a plan's parts: subtrees that are worth it on threads of their own. What a
+//! part hands to the one above it is added there in a fixed order, so that any number of threads finds the same bits.
+
+use super::factor::{Factor, Room};
+use super::front;
+use super::plan::{NONE, Plan, Supernode};
+use super::reduction::{add_packed, pack};
+use crate::stencil::Stencil;
+use std::ops::Range;
+
+/// Numbers of a subtree's factor from which on its halves are worth two threads: 2^14 and 2^16 take as long.
+pub(super) const WORTH: usize = 1 << 15;
+
+/// Whether the subtree of a part is worth being cut for threads.
+fn is_worth(plan: &Plan, root: usize) -> bool {
+    rayon::current_num_threads() > 1 && plan.columns_to(root).len() >= WORTH && plan.parts[root].children > 0
+}
+
+/// The first child of a part, and the last one if there are two.
+fn halves(plan: &Plan, root: usize) -> (usize, Option<usize>) {
+    let mut children = plan.children(root);
+    let last = children.next().unwrap_or(root);
+    children.next().map_or((last, None), |first| (first, Some(last)))
+}
+
+/// What one thread works with.
+#[derive(Default)]
+pub struct Desk {
+    columns: Vec<f64>,     // of the front in work
+    matrix: Vec<f64>,      // what it leaves
+    places: Vec<usize>,    // in its front by elimination number
+    packed: Vec<Vec<f64>>, // what parts leave that has not been taken
+    good: bool,            // whether all pivots were positive
+}
+
+impl Desk {
+    /// An empty one for a plan.
+    fn clear(&mut self, plan: &Plan) {
+        self.places.resize(plan.order.len(), 0);
+        self.packed.clear();
+        self.good = true;
+    }
+}
+
+/// The matrix that is factorised: a stencil's entries times a power of two.
+pub struct Elimination<'a, const D: usize, const C: usize> {
+    pub plan: &'a Plan,
+    pub stencil: &'a Stencil<D, C>,
+    pub scale: f64,
+}
+
+impl<const D: usize, const C: usize> Elimination<'_, D, C> {
+    /// Eliminates all parts into `room`. What is left of the last one's front, packed, and whether all pivots were
+    /// positive and finite.
+    pub fn run(&self, room: Room<'_>, desk: &mut Desk) -> (Vec<f64>, bool) {
+        desk.clear(self.plan);
+        self.subtree(self.plan.parts.len() - 1, room, desk);
+        (desk.packed.pop().expect("a plan has a last part"), desk.good)
+    }
+
+    /// Eliminates a part and all below it, whose columns `room` begins with; what it leaves comes last on the desk.
+    fn subtree(&self, root: usize, room: Room<'_>, desk: &mut Desk) {
+        if !is_worth(self.plan, root) {
+            return self.in_order(self.plan.parts[root].first..root + 1, room, desk);
+        }
+        let (first, last) = halves(self.plan, root);
+        let (low, rest) = room.split_at(self.plan.columns_to(first).len());
+        let Some(last) = last else {
+            self.subtree(first, low, desk);
+            return self.in_order(root..root + 1, rest, desk);
+        };
+        let (high, own) = rest.split_at(self.plan.columns_to(last).len());
+        let other = || {
+            let mut desk = Desk::default();
+            desk.clear(self.plan);
+            self.subtree(last, high, &mut desk);
+            desk
+        };
+        let ((), mut other) = rayon::join(|| self.subtree(first, low, desk), other);
+        desk.packed.append(&mut other.packed);
+        desk.good &= other.good;
+        self.in_order(root..root + 1, own, desk);
+    }
+
+    /// Eliminates parts one after another, whose columns `room` begins with.
+    fn in_order(&self, parts: Range<usize>, mut room: Room<'_>, desk: &mut Desk) {
+        let start = self.plan.parts[parts.start].start;
+        let Desk { columns, matrix, places, packed, good } = desk;
+        for index in parts {
+            let part = &self.plan.parts[index];
+            (0..).zip(self.plan.front(part)).for_each(|(place, number)| places[number] = place);
+            let order = part.rim.len();
+            columns.clear();
+            columns.resize(part.own.len() * part.rows(), 0.0);
+            matrix.clear();
+            matrix.resize(order * order, 0.0);
+            self.take(index, places, columns, matrix);
+            for child in self.plan.children(index) {
+                let left = packed.pop().expect("children come right before their parent");
+                add_packed(&left, &self.plan.parts[child].above, (columns, part.own.len()), matrix);
+            }
+            *good &= front::factorise(columns, part.rows());
+            front::subtract_from_rest(columns, part.rows(), matrix);
+            room.keep(part.start - start, columns, part.rows());
+            packed.push(pack(matrix, order));
+        }
+    }
+
+    /// Adds the matrix's own entries of a part: its rows against what is eliminated later; of the last part, what it
+    /// shares.
+    fn take(&self, index: usize, places: &[usize], columns: &mut [f64], matrix: &mut [f64]) {
+        let Self { plan, stencil, scale } = *self;
+        let part = &plan.parts[index];
+        let (rows, order) = (part.rows(), part.rim.len());
+        // Between two bodies a separator may be without unknowns, too.
+        let last = index + 1 == plan.parts.len();
+        let numbers = if last { plan.eliminated()..plan.order.len() } else { part.own.clone() };
+        for number in numbers {
+            let place = places[number];
+            let target =
+                if last { &mut matrix[place * order..][..order] } else { &mut columns[place * rows..][..rows] };
+            for (component, values) in stencil.row(plan.order[number] as usize) {
+                for (value, &other) in values.iter().zip(&plan.number[component..component + C]) {
+                    if other != NONE && other as usize >= number {
+                        target[places[other as usize]] += value * scale;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What one thread solves with.
+#[derive(Default)]
+pub struct Slate {
+    x: Vec<f64>,    // of the front in work
+    rims: Vec<f64>, // of parts whose neighbours in the tree have not taken theirs
+}
+
+/// The triangular solves with a factor.
+#[derive(Clone, Copy)]
+pub struct Triangles<'a> {
+    pub plan: &'a Plan,
+    pub factor: &'a Factor,
+}
+
+impl Triangles<'_> {
+    /// Takes what is eliminated from the right-hand side `work`, by elimination numbers.
+    pub fn forward(&self, work: &mut [f64], slate: &mut Slate) {
+        let (eliminated, others) = work.split_at_mut(self.plan.eliminated());
+        self.forward_to(self.plan.parts.len() - 1, eliminated, slate);
+        others.iter_mut().zip(&slate.rims).for_each(|(value, taken)| *value += taken);
+        slate.rims.clear();
+    }
+
+    /// Solves for what is eliminated, given the solution of the last numbers of `work`.
+    pub fn backward(&self, work: &mut [f64], slate: &mut Slate) {
+        let (eliminated, others) = work.split_at_mut(self.plan.eliminated());
+        slate.rims.extend_from_slice(others);
+        self.backward_to(self.plan.parts.len() - 1, eliminated, slate);
+    }
+
+    fn forward_to(&self, root: usize, work: &mut [f64], slate: &mut Slate) {
+        if !is_worth(self.plan, root) {
+            return self.forward_in_order(self.plan.parts[root].first..root + 1, work, slate);
+        }
+        let (first, last) = halves(self.plan, root);
+        let (low, rest) = work.split_at_mut(self.plan.numbers_to(first).len());
+        let Some(last) = last else {
+            self.forward_to(first, low, slate);
+            return self.forward_in_order(root..root + 1, rest, slate);
+        };
+        let (high, own) = rest.split_at_mut(self.plan.numbers_to(last).len());
+        let other = || {
+            let mut slate = Slate::default();
+            self.forward_to(last, high, &mut slate);
+            slate.rims
+        };
+        let ((), other) = rayon::join(|| self.forward_to(first, low, slate), other);
+        slate.rims.extend(other);
+        self.forward_in_order(root..root + 1, own, slate);
+    }
+
+    fn forward_in_order(&self, parts: Range<usize>, work: &mut [f64], Slate { x, rims }: &mut Slate) {
+        let base = self.plan.parts[parts.start].own.start;
+        for index in parts {
+            let part = &self.plan.parts[index];
+            let own = &mut work[part.own.start - base..part.own.end - base];
+            x.clear();
+            x.extend_from_slice(own);
+            x.resize(part.rows(), 0.0);
+            for child in self.plan.children(index) {
+                let above = &self.plan.parts[child].above;
+                let start = rims.len() - above.len();
+                above.iter().zip(&rims[start..]).for_each(|(&place, taken)| x[place] += taken);
+                rims.truncate(start);
+            }
+            self.factor.forward(part.start, part.shape(), x);
+            own.copy_from_slice(&x[..own.len()]);
+            rims.extend_from_slice(&x[own.len()..]);
+        }
+    }
+
+    fn backward_to(&self, root: usize, work: &mut [f64], slate: &mut Slate) {
+        if !is_worth(self.plan, root) {
+            return self.backward_in_order(self.plan.parts[root].first..root + 1, work, slate);
+        }
+        let (first, last) = halves(self.plan, root);
+        let (low, rest) = work.split_at_mut(self.plan.numbers_to(first).len());
+        let Some(last) = last else {
+            self.backward_in_order(root..root + 1, rest, slate);
+            return self.backward_to(first, low, slate);
+        };
+        let (high, own) = rest.split_at_mut(self.plan.numbers_to(last).len());
+        self.backward_in_order(root..root + 1, own, slate);
+        let start = slate.rims.len() - self.plan.parts[last].rim.len();
+        let mut other = Slate { rims: slate.rims.split_off(start), ..Slate::default() };
+        rayon::join(|| self.backward_to(first, low, slate), || self.backward_to(last, high, &mut other));
+    }
+
+    fn backward_in_order(&self, parts: Range<usize>, work: &mut [f64], Slate { x, rims }: &mut Slate) {
+        let base = self.plan.parts[parts.start].own.start;
+        for index in parts.rev() {
+            let part: &Supernode = &self.plan.parts[index];
+            let own = &mut work[part.own.start - base..part.own.end - base];
+            let start = rims.len() - part.rim.len();
+            x.clear();
+            x.extend_from_slice(own);
+            x.extend_from_slice(&rims[start..]);
+            rims.truncate(start);
+            self.factor.backward(part.start, part.shape(), x);
+            own.copy_from_slice(&x[..own.len()]);
+            // The last child is the next one.
+            let children: [Option<usize>; 2] = {
+                let mut children = self.plan.children(index);
+                [children.next(), children.next()]
+            };
+            for child in children.into_iter().rev().flatten() {
+                rims.extend(self.plan.parts[child].above.iter().map(|&place| x[place]));
+            }
+        }
+    }
+}

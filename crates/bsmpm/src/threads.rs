@@ -1,0 +1,135 @@
+//! Work of a rank that its threads share. Whatever their number, results have the same bits: values come in the order
+//! of the points, sums are exact, and a largest value has no order.
+
+use crate::exact::Exact;
+use crate::tensor::Symmetric;
+use nalgebra::SMatrix;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Mutex;
+
+/// Points of a chunk: enough that handing it out costs nothing, few enough that threads end together.
+pub(crate) const CHUNK: usize = 1024;
+
+/// Threads share `count` pieces of work, by their index. Not generic in the work: with a copy for every pass, most of
+/// what is compiled of a program would be the machinery of threads.
+pub(crate) fn share(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().for_each(work);
+}
+
+/// The same by chunks of so many points.
+pub(crate) fn by_chunks(points: usize, work: &(dyn Fn(usize, Range<usize>) + Sync)) {
+    let of = |chunk: usize| work(chunk, chunk * CHUNK..points.min((chunk + 1) * CHUNK));
+    share(points.div_ceil(CHUNK), &of);
+}
+
+/// What every chunk of points leaves.
+pub(crate) fn of_chunks<T: Send>(points: usize, of: impl Fn(usize, Range<usize>) -> T + Sync) -> Vec<T> {
+    let parts: Vec<Mutex<Option<T>>> = (0..points.div_ceil(CHUNK)).map(|_| Mutex::default()).collect();
+    by_chunks(points, &|chunk, points| {
+        *parts[chunk].lock().expect("the chunk's only thread") = Some(of(chunk, points))
+    });
+    parts.into_iter().filter_map(|part| part.into_inner().expect("no thread panicked")).collect()
+}
+
+/// A value of every point, in their order.
+pub fn each<T: Send>(points: usize, value: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    (0..points).into_par_iter().map(&value).collect()
+}
+
+/// Sum of a value over the points.
+pub fn sum(points: usize, value: impl Fn(usize) -> f64 + Sync) -> Exact {
+    let [sum] = sums(points, |p| [value(p)]);
+    sum
+}
+
+/// Sums of several values over the points.
+pub fn sums<const N: usize>(points: usize, values: impl Fn(usize) -> [f64; N] + Sync) -> [Exact; N] {
+    let of = |_, points: Range<usize>| {
+        let mut sums = [const { Exact::ZERO }; N];
+        points.for_each(|p| sums.iter_mut().zip(values(p)).for_each(|(sum, value)| sum.add(value)));
+        sums
+    };
+    added(of_chunks(points, of))
+}
+
+/// Sums of what so many pieces of work have.
+pub fn total<const N: usize>(pieces: usize, of: impl Fn(usize) -> [Exact; N] + Sync) -> [Exact; N] {
+    added(each(pieces, of))
+}
+
+/// Sums of sums.
+pub(crate) fn added<const N: usize>(parts: Vec<[Exact; N]>) -> [Exact; N] {
+    let mut sums = [const { Exact::ZERO }; N];
+    for part in parts {
+        sums.iter_mut().zip(&part).for_each(|(sum, part)| *sum += part);
+    }
+    sums
+}
+
+/// Largest value among the points, 0 without any that is larger.
+pub fn largest(points: usize, value: impl Fn(usize) -> f64 + Sync) -> f64 {
+    of_chunks(points, |_, points| points.map(&value).fold(0.0, f64::max)).into_iter().fold(0.0, f64::max)
+}
+
+/// Rows of the points, of `width` items each, by chunks for a thread at a time.
+pub(crate) fn apart<T>(rows: &mut [T], width: usize) -> Vec<Mutex<&mut [T]>> {
+    rows.chunks_mut(width * CHUNK).map(Mutex::new).collect()
+}
+
+/// Changes the rows of the points, of `width` items each.
+pub fn change<T: Send>(rows: &mut [T], width: usize, change: impl Fn(usize, &mut [T]) + Sync) {
+    let (points, rows) = (rows.len() / width, apart(rows, width));
+    by_chunks(points, &|chunk, points| {
+        let rows = &mut **rows[chunk].lock().expect("the chunk's only thread");
+        points.zip(rows.chunks_exact_mut(width)).for_each(|(p, row)| change(p, row));
+    });
+}
+
+/// A value that stands in a place until a thread has put its own there.
+pub trait Blank: Clone + Send {
+    /// It.
+    fn blank() -> Self;
+}
+
+impl Blank for f64 {
+    fn blank() -> Self {
+        0.0
+    }
+}
+
+impl<const R: usize, const C: usize> Blank for SMatrix<f64, R, C> {
+    fn blank() -> Self {
+        Self::zeros()
+    }
+}
+
+impl Blank for Symmetric {
+    fn blank() -> Self {
+        Self::default()
+    }
+}
+
+impl<const N: usize> Blank for [f64; N] {
+    fn blank() -> Self {
+        [0.0; N]
+    }
+}
+
+impl<T: Clone + Send> Blank for Option<T> {
+    fn blank() -> Self {
+        None
+    }
+}
+
+impl<A: Blank, B: Blank> Blank for (A, B) {
+    fn blank() -> Self {
+        (A::blank(), B::blank())
+    }
+}
+
+impl<A: Blank, B: Blank, C: Blank> Blank for (A, B, C) {
+    fn blank() -> Self {
+        (A::blank(), B::blank(), C::blank())
+    }
+}
