@@ -6,6 +6,7 @@ use crate::slab::{NodeBox, Slabs};
 use crate::traffic::{Traffic, TrafficKind};
 use bsmpm::grid::Grid;
 use bsmpm::points::Points;
+use bsmpm::threads;
 use mpi::collective::CommunicatorCollectives;
 use mpi::point_to_point::{Destination, Source};
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -21,8 +22,8 @@ pub fn points<const D: usize>(
     points: &mut Points<D>,
 ) {
     let rank = world.rank().unsigned_abs() as usize;
-    let owners = points.x.iter().map(|x| grid.locate(x).map_or(rank, |cell| slabs.owner(&cell)));
-    let PointPlan { stay, leave } = PointPlan::new(owners, rank);
+    let owner = |p: usize| grid.locate(&points.x[p]).map_or(rank, |cell| slabs.owner(&cell));
+    let PointPlan { stay, leave } = PointPlan::new(threads::each(points.len(), owner).into_iter(), rank);
     // Messages are column by column: every column then takes its rows from the message in one run.
     let mut outgoing: Vec<(usize, Vec<u8>)> = leave.iter().map(|(other, _)| (*other, Vec::new())).collect();
     for column in points.columns() {

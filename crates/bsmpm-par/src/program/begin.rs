@@ -72,6 +72,7 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     let mut scene = scene::<K, D>(seam, case, cut, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
     let told = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
     start.warn(told);
+    start.warn(crowded(arguments.threads));
     let before = before(&start, &arguments.directory());
     let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;
     if let RunStart::Resumed(resumed) = start {
@@ -80,6 +81,17 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     let speaks = universe.world().rank() == 0;
     let log = Log::new(speaks, arguments.quiet, arguments.verbose, arguments.log_format, case.analysis.end);
     Ok(Run::new((universe, hdf5), task, scene, (ledger, log), timers, before).until_the_end())
+}
+
+/// What is wrong where this process has fewer cores than threads, as where `mpirun` binds a rank to one core.
+fn crowded(threads: u32) -> Option<String> {
+    let cores = std::thread::available_parallelism().ok()?.get();
+    (threads as usize > cores).then(|| {
+        format!(
+            "--threads {threads}: this rank may use {cores} core(s), where threads take turns; mpirun --bind-to none, or \
+             --map-by slot:PE={threads}, gives it more"
+        )
+    })
 }
 
 /// The output directory, on rank 0, which from now on is nobody else's. Collective.
