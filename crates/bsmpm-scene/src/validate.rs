@@ -150,6 +150,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     section::warn_of_neighbours(&case, record, report);
     lines::place(&mut case, record, report);
     physics::check(&case, record, report);
+    material::band::check(&case, record, report);
     reduction::at_stage(&mut case, record, report);
     free_field::check(&case, record, report);
     water::check(&case, record, report);
