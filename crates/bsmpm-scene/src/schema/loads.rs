@@ -66,7 +66,7 @@ pub(super) static FOOTING: Table = Table {
             Default("\"smooth\""),
             "\"smooth\" holds the normal component, \"rough\" all; or a table: it rubs, and lets go",
         ),
-        key("name", Name, Optional, "what stages and histories call it"),
+        key("name", Name, Optional, "what stages and histories call it; \"footing\" unless given"),
     ],
     exclusive: &[
         one_of(&["from", "rectangle", "disc"], true),

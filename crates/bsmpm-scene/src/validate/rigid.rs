@@ -195,6 +195,10 @@ fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, repor
     if is_free && rigid.mass[0] == 0.0 && rigid.force == [0.0; 3] {
         record.error("free", "nothing acts on it: give `mass`, `density`, `force` or `moment`", report);
     }
+    for key in ["ramp", "amplitude"].into_iter().filter(|key| record.gives(key) && rigid.force == [0.0; 3]) {
+        let path = record.path_of(key);
+        report.warn(format!("{path}: there is no `force` or `moment` that would grow: it does nothing"));
+    }
     for key in ["start_velocity", "start_spin"] {
         if record.gives(key) && regime == Some(Regime::QuasiStatic) {
             record.error(key, "nothing has a velocity in a quasi-static analysis", report);
