@@ -404,12 +404,14 @@ fn longest(case: &Case) -> f64 {
     edges(0).max(edges(1))
 }
 
-/// Whether a rigid body that rests or is moved holds a component of a body that lies at it from the start on.
-pub(super) fn hold(case: &Case, component: usize) -> bool {
+/// Whether a rigid body other than `except` that rests or is moved holds a component of a body that lies at it from the
+/// start on.
+pub(super) fn hold(case: &Case, component: usize, except: Option<Acting>) -> bool {
     let at_body = |at: [f64; 2]| case.bodies.iter().any(|body| body.region.contains(at));
     let out = OVERLAP * case.grid.shortest();
     let holds = |(number, rigid): (usize, &Rigid)| {
-        if rigid.free.contains(&true) || case.acts_since(Acting::Rigid(number), 0.0).is_none() {
+        let acting = Acting::Rigid(number);
+        if rigid.free.contains(&true) || Some(acting) == except || case.acts_since(acting, 0.0).is_none() {
             return false;
         }
         let rubs = rigid.friction > 0.0;
