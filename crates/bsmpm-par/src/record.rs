@@ -37,7 +37,8 @@ pub struct Recorder<const D: usize> {
     books: Option<Books>,    // of energy, opened by the first row
     left: Outlet,
     work: Vec<f64>,  // J/m, of every strip; empty where no history wants it
-    datum: Vec<Row>, // m, of every history's displacement when they were last set to zero, if they ever were
+    datum: Vec<Row>, // m, deg: of every history's displacement when they were last set to zero, if they ever were
+    moved: Vec<Row>, // m, deg: of what is rigid in the last row, from the start on
     grid: GridSpec,
     lower: Vector<D>,
 }
@@ -82,6 +83,7 @@ impl<const D: usize> Recorder<D> {
             drains: surfaces::drain_places(case),
             books: state.books.map(|BooksForm(books)| books),
             datum: state.datum,
+            moved: vec![Row::new(); case.histories.len()],
             left: state.left,
             grid: case.grid.clone(),
             lower: vector(case.grid.lower()),
@@ -104,13 +106,12 @@ impl<const D: usize> Recorder<D> {
             }
         }
         if stage.resets_displacements {
-            let raw = |(history, followed): (&History, &Option<u64>)| match (&history.quantity, followed) {
-                (Quantity::Displacement { at }, Some(id)) => {
-                    displacement((*at, self.lower), *id, points, halo).to_vec()
-                }
+            let raw = |(number, history): (usize, &History)| match (&history.quantity, self.followed[number]) {
+                (Quantity::Displacement { at }, Some(id)) => displacement((*at, self.lower), id, points, halo).to_vec(),
+                (quantity, _) if is_of_rigid(quantity) => self.moved[number].clone(),
                 _ => vec![0.0; D],
             };
-            self.datum = self.histories.iter().zip(&self.followed).map(raw).collect();
+            self.datum = self.histories.iter().enumerate().map(raw).collect();
         }
     }
 
@@ -171,7 +172,7 @@ impl<const D: usize> Recorder<D> {
         self.work.iter_mut().zip(&report.strips).for_each(|(sum, strip)| *sum += strip.work);
         let mut row = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
-            let values = match &history.quantity {
+            let mut values = match &history.quantity {
                 Quantity::Reaction { face } => self.reaction(number, model, *face, report),
                 Quantity::FootingPressure | Quantity::FootingForce | Quantity::Penetration | Quantity::Slip => {
                     vec![self.footing(&history.quantity, t, report)]
@@ -203,6 +204,11 @@ impl<const D: usize> Recorder<D> {
                 Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
                 quantity => self.values((number, quantity), model, points, halo)?,
             };
+            if is_of_rigid(&history.quantity) {
+                self.moved[number].clone_from(&values);
+                let datum = self.datum.get(number).into_iter().flatten();
+                values.iter_mut().zip(datum).for_each(|(value, datum)| *value -= datum);
+            }
             row.extend(values.iter().map(|value| history.factor() * value));
         }
         Ok(row)
@@ -300,6 +306,12 @@ impl<const D: usize> Recorder<D> {
         let whole = [now.kinetic, now.elastic, flows.plastic, flows.external, flows.numerical()];
         whole.into_iter().chain(parts).chain([books.closure(now)]).collect()
     }
+}
+
+/// Whether it tells how far the footing or a rigid body has moved.
+fn is_of_rigid(quantity: &Quantity) -> bool {
+    use Measurement::{RigidDisplacement, RigidRotation};
+    matches!(quantity, Quantity::Penetration | Quantity::Rigid { what: RigidDisplacement | RigidRotation, .. })
 }
 
 /// The points that every history counts.

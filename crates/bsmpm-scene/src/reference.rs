@@ -182,9 +182,10 @@ fn takes(key: &Key) -> String {
             "a list of rows, each `[t, x, y]`, of a solid `[t, x, y, z]`, a time and {of}, or a [file](#rows-from-a-file)"
         ),
         Kind::Gradient(of) => format!("{of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or("")),
-        Kind::GradientPair(of) => {
-            format!("`[x, y]`, each {of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or(""))
-        }
+        Kind::GradientVector(of) => format!(
+            "`[x, y]`, of a solid `[x, y, z]`, each {of} per metre of depth, e.g. `\"2 {}/m\"`",
+            of.units().next().unwrap_or("")
+        ),
         Kind::Choice(_) => "one of these words".to_owned(),
         Kind::Choices(_) => "a list of these words".to_owned(),
         Kind::ChoiceOr(_, table) => format!("one of these words, or a table, `{}`", table.header),

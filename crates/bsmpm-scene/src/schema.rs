@@ -86,15 +86,15 @@ pub enum Kind {
     Profile(Dimension, Range, &'static Table),
     /// Growth of a quantity per metre: a number in SI per metre (degrees per metre), or a string such as `"2 kPa/m"`.
     Gradient(Dimension),
-    /// Two of these, x and y.
-    GradientPair(Dimension),
+    /// As many of these as the geometry has axes.
+    GradientVector(Dimension),
     /// A number, or a string with a unit of whatever the key is about.
     Measure,
     /// Two quantities, x and y.
     Pair(Dimension, Range),
     /// As many as the geometry has axes: x and y, and of a solid z.
     Vector(Dimension, Range),
-    /// Like `Pair`, or a table that says how they grow with depth.
+    /// Like `Vector`, or a table that says how they grow with depth.
     PairProfile(Dimension, Range, &'static Table),
     /// One quantity for all axes, or one each.
     Either(Dimension, Range),
@@ -224,7 +224,9 @@ impl fmt::Display for Kind {
             Self::Quantity(dimension, _) => write!(f, "{}", QuantityWords(*dimension)),
             Self::Profile(dimension, _, table) => write!(f, "{}, or {}", QuantityWords(*dimension), table.header),
             Self::Gradient(dimension) => write!(f, "{}", PerMetre(*dimension)),
-            Self::GradientPair(dimension) => write!(f, "a list of two, each {}", PerMetre(*dimension)),
+            Self::GradientVector(dimension) => {
+                write!(f, "a list of two (solid: of three), each {}", PerMetre(*dimension))
+            }
             Self::Rows(columns) => {
                 let columns: Vec<String> = columns.iter().map(|(dimension, _)| dimension.to_string()).collect();
                 write!(f, "a list of rows, each [{}], or {FILE}", columns.join(", "))

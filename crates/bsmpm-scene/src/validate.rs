@@ -7,6 +7,7 @@ mod flow;
 mod free_field;
 mod grid;
 mod history;
+mod lasting;
 mod lines;
 mod load;
 mod material;
@@ -149,7 +150,9 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     strip::beside_fixed(&case, report);
     section::warn_of_neighbours(&case, record, report);
     lines::place(&mut case, record, report);
+    material::band::check(&case, record, report);
     physics::check(&case, record, report);
+    lasting::check(&case, record, report);
     reduction::at_stage(&mut case, record, report);
     free_field::check(&case, record, report);
     water::check(&case, record, report);

@@ -58,6 +58,37 @@ fn one_test_of_another_material_by_options() {
     assert!(matches!(run(&arguments, |_| {}), Err(Error::Usage { reason }) if reason.contains("drained-100")));
 }
 
+/// Of a solid the height is z, which a grid that begins elsewhere along y does not change.
+#[test]
+fn a_strength_by_depth_in_a_solid_is_that_of_the_height_along_z() {
+    let directory = tempfile::tempdir().unwrap();
+    let case = directory.path().join("case.toml");
+    let text = r#"
+        geometry = "solid"
+        analysis = { type = "quasi-static", steps = 1 }
+        grid = { lower = [0, -10, -5], upper = [1, -9, 0], cell = 1, order = "quadratic" }
+        boundary = { bottom = "fixed" }
+        [material.clay]
+        model = "tresca"
+        young = "20 MPa"
+        poisson = 0.3
+        cohesion = { value = "20 kPa", at_y = 0, per_metre = "2 kPa/m" }
+        [[body]]
+        material = "clay"
+        box = { lower = [0, -10, -5], upper = [1, -9, 0] }
+        points_per_cell = 2
+        [element.sample]
+        height = -3
+        stage = [{ test = "triaxial", compression = 0.01 }]
+    "#;
+    fs::write(&case, text).unwrap();
+    let (_, files) = run(&arguments(&case, directory.path()), |_| {}).unwrap();
+    let found = table::read(&files[0]).unwrap();
+    let (last, volume) = (found.get("deviator").unwrap().last(), found.get("volume-strain").unwrap().last());
+    let kirchhoff = last.unwrap() * volume.unwrap().exp();
+    assert!((kirchhoff / (2.0 * 26e3) - 1.0).abs() < 1e-9, "{kirchhoff}");
+}
+
 /// The table ends where the material was left, and the program says so.
 #[test]
 fn what_a_material_cannot_carry_ends_the_test_with_code_80() {

@@ -135,7 +135,7 @@ pub struct RecordState {
     /// J/m  work of every strip since the start; empty where no history wants it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub work: Vec<f64>,
-    /// m  displacement of every history when displacements were last set to zero; empty if they never were.
+    /// m, deg  displacement of every history when displacements were last set to zero; empty if they never were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub datum: Vec<Row>,
 }

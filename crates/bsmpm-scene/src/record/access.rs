@@ -21,7 +21,7 @@ impl Record {
         number: f64, Kind::Quantity(..) | Kind::Profile(..) | Kind::Gradient(_) => Datum::Number(number) => *number;
         measure: (f64, Option<Dimension>), Kind::Measure => Datum::Measure(number, unit) => (*number, *unit);
         numbers: &[f64],
-            Kind::Pair(..) | Kind::Vector(..) | Kind::PairProfile(..) | Kind::GradientPair(_) | Kind::Either(..)
+            Kind::Pair(..) | Kind::Vector(..) | Kind::PairProfile(..) | Kind::GradientVector(_) | Kind::Either(..)
             | Kind::List(..)
             => Datum::Numbers(numbers) => numbers;
         rows: &[ListRow], Kind::Rows(_) | Kind::Course(_) => Datum::Rows(rows) => rows;

@@ -32,8 +32,8 @@ pub(super) fn read(
         Kind::Quantity(dimension, range) => reader.quantity(node, *dimension, range).map(Datum::Number),
         Kind::Profile(dimension, range, _) => reader.quantity(node, *dimension, range).map(Datum::Number),
         Kind::Gradient(dimension) => reader.gradient(node, *dimension).map(Datum::Number),
-        Kind::GradientPair(dimension) => match &node.value {
-            Value::List(items) if items.len() == 2 => {
+        Kind::GradientVector(dimension) => match &node.value {
+            Value::List(items) if items.len() == dims => {
                 let read: Vec<Option<f64>> = items.iter().map(|item| reader.gradient(item, *dimension)).collect();
                 read.into_iter().collect::<Option<_>>().map(Datum::Numbers)
             }

@@ -66,7 +66,7 @@ pub(super) static FOOTING: Table = Table {
             Default("\"smooth\""),
             "\"smooth\" holds the normal component, \"rough\" all; or a table: it rubs, and lets go",
         ),
-        key("name", Name, Optional, "what stages and histories call it"),
+        key("name", Name, Optional, "what stages and histories call it; \"footing\" unless given"),
     ],
     exclusive: &[
         one_of(&["from", "rectangle", "disc"], true),
@@ -151,7 +151,7 @@ pub(super) static TRACTION: Table = Table {
             "stress",
             PairProfile(In::Stress, Range::ANY, &STRESSES_PROFILE),
             Optional,
-            "force per area of the start, along the axes; by depth in a plane only",
+            "force per area of the start, along the axes, or by depth",
         ),
         key(
             "pressure",
@@ -290,10 +290,11 @@ pub(super) static INITIAL: Table = Table {
 
 pub(super) static STRESS_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of a stress",
-    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start",
+    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; of a \
+          solid the height is z",
     keys: &[
         key("value", Quantity(In::Stress, Range::ANY), Required, "at the height at_y"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; of a solid z"),
         key("per_metre", Gradient(In::Stress), Required, "growth per metre of depth"),
     ],
     exclusive: &[],
@@ -301,21 +302,23 @@ pub(super) static STRESS_PROFILE: Table = Table {
 
 static STRESSES_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of stresses",
-    doc: "value + per_metre (at_y - y) along x and y: linear everywhere, above at_y too, by the height at the start",
+    doc: "value + per_metre (at_y - y) along the axes: linear everywhere, above at_y too, by the height at the start; of a \
+          solid the height is z",
     keys: &[
-        key("value", Pair(In::Stress, Range::ANY), Required, "along x and y, at the height at_y"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height"),
-        key("per_metre", GradientPair(In::Stress), Required, "growth per metre of depth, along x and y"),
+        key("value", Vector(In::Stress, Range::ANY), Required, "along the axes, at the height at_y"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; of a solid z"),
+        key("per_metre", GradientVector(In::Stress), Required, "growth per metre of depth, along the axes"),
     ],
     exclusive: &[],
 };
 
 pub(super) static ANGLE_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of an angle",
-    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start",
+    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; of a \
+          solid the height is z",
     keys: &[
         key("value", Quantity(In::Angle, Range::ANY), Required, "at the height at_y"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; of a solid z"),
         key("per_metre", Gradient(In::Angle), Required, "growth per metre of depth"),
     ],
     exclusive: &[],

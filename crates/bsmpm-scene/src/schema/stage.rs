@@ -40,7 +40,12 @@ pub(super) static STAGE: Table = Table {
             Optional,
             "strength of all materials divided by this from there on, as by [strength_reduction] factor, and in its place",
         ),
-        key("reset_displacements", Flag, Default("false"), "whether displacements that are told count from here"),
+        key(
+            "reset_displacements",
+            Flag,
+            Default("false"),
+            "whether displacements that are told count from here, those of the footing and of rigid bodies, too",
+        ),
     ],
     exclusive: &[],
 };

@@ -67,7 +67,7 @@ fn read(
     if !graded && record.gives("height") {
         record.error("height", format!("material.{} is the same everywhere", materials[material].name), report);
     }
-    let height = if graded { Some(record.number("height")? - grid.lower()[1]) } else { None };
+    let height = if graded { Some(record.number("height")? - grid.lower()[grid.dims() - 1]) } else { None };
     let (pressure, k0) = (record.number("pressure")?, record.number("k0")?);
     let stages: Option<Vec<_>> = read.into_iter().collect();
     Some(ElementTest { name: name.to_owned(), material, height, pressure, k0, stages: stages? })

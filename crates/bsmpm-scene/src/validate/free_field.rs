@@ -1,9 +1,10 @@
 //! Sides that follow a free field.
 
 use super::physics::reached;
-use crate::case::{Body, Case, LoadedLine, RigidShape, Site, Support};
+use crate::case::{Body, Case, LoadedLine, Rigid, RigidShape, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
+use crate::surfaces::outline;
 use crate::words::{Side, Word};
 
 /// The free field is columns of what lies at them, on the base, which nothing else holds or loads.
@@ -36,7 +37,9 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
             refuse("ground with a velocity at the start is no free field: it goes with [shaking]".into());
         }
         if let Some(what) = acts_between(case, (lower, higher)) {
-            refuse(format!("{what} acts on the cells at it, which are the free field: keep it more than a cell away"));
+            refuse(format!(
+                "{what} acts on the cells at it, which are the free field: keep it more than a cell away, all the time"
+            ));
         }
     }
 }
@@ -47,6 +50,26 @@ fn column(case: &Case, upper: bool) -> (f64, f64) {
     let cells = of.cells();
     let cell = if upper { cells - 1 } else { 0 };
     (lower + of.breakpoint(cell), lower + of.breakpoint(cell + 1))
+}
+
+/// Whether a rigid body is between two places along x at some time of the way that it is given.
+fn comes_between(rigid: &Rigid, (lower, higher): (f64, f64)) -> bool {
+    let turns = rigid.free[2] || !rigid.rotation.is_empty();
+    let [left, right] = match &rigid.shape {
+        RigidShape::InSpace(_) => return false,
+        shape if turns => {
+            let reach = outline(shape, rigid.about).radius();
+            [rigid.about[0] - reach, rigid.about[0] + reach]
+        }
+        RigidShape::Circle { center, radius } => [center[0] - radius, center[0] + radius],
+        RigidShape::Polygon(corners) => {
+            let ends = corners.iter().map(|corner| corner[0]);
+            [ends.clone().fold(f64::INFINITY, f64::min), ends.fold(f64::NEG_INFINITY, f64::max)]
+        }
+    };
+    let way = || std::iter::once(0.0).chain(rigid.path.rows.iter().map(|(_, moved)| moved[0]));
+    let pieces = way().zip(way().skip(1).chain(way().last()));
+    pieces.into_iter().any(|(from, to)| left + from.min(to) < higher && right + from.max(to) > lower)
 }
 
 /// What holds or loads material between two places along x.
@@ -62,14 +85,6 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
         Site::Segment { from, to } => within(from[0], to[0]),
         Site::Plate(plate) => within(plate.lower[0], plate.upper[0]),
     };
-    let shape = |shape: &RigidShape| match shape {
-        RigidShape::Circle { center, radius } => within(center[0] - radius, center[0] + radius),
-        RigidShape::InSpace(_) => false,
-        RigidShape::Polygon(corners) => {
-            let ends = corners.iter().map(|corner| corner[0]);
-            within(ends.clone().fold(f64::INFINITY, f64::min), ends.fold(f64::NEG_INFINITY, f64::max))
-        }
-    };
     let acting = [
         (
             "the footing",
@@ -77,7 +92,7 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
         ),
         ("a prescribed motion", case.prescribed.iter().any(|motion| site(&motion.site))),
         ("a traction", case.tractions.iter().any(|traction| line(&traction.line))),
-        ("a rigid body", case.rigid.iter().any(|rigid| shape(&rigid.shape))),
+        ("a rigid body", case.rigid.iter().any(|rigid| comes_between(rigid, (lower, higher)))),
         ("a point load", case.point_loads.iter().any(|load| within(load.at[0], load.at[0]))),
     ];
     acting.into_iter().find(|(_, acts)| *acts).map(|(what, _)| what)

@@ -14,6 +14,9 @@ use std::collections::HashSet;
 /// Histories at most, each a column or several of every row.
 const MOST: usize = 1000;
 
+/// What a footing without a name is called.
+pub(super) const NAMELESS: &str = "footing";
+
 /// Materials and bodies of the case, without errors.
 type CaseBodies<'a> = Option<(&'a [NamedMaterial], &'a [Body])>;
 
@@ -105,7 +108,7 @@ fn read(
 /// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.
 fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut Report<'_>) -> Option<usize> {
     let wanted = record.text("of")?;
-    let footing = root.records("footing").iter().map(|strip| (strip, strip.text("name").unwrap_or("footing"), "base"));
+    let footing = root.records("footing").iter().map(|strip| (strip, strip.text("name").unwrap_or(NAMELESS), "base"));
     let motions =
         root.records("prescribed").iter().map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
     let strips: Vec<_> = footing.chain(motions).collect();

@@ -75,9 +75,8 @@ fn stresses(record: &Record) -> Option<[Profile; 3]> {
     let Some(table) = record.record("stress") else {
         return record.vector("stress").map(|of| of.map(Profile::constant));
     };
-    let (value, at, growth) = (table.pair("value")?, table.number("at_y")?, table.pair("per_metre")?);
-    let along = |axis: usize| Profile { value: value[axis], at, per_metre: growth[axis] };
-    Some([along(0), along(1), Profile::constant(0.0)])
+    let (value, at, growth) = (table.vector("value")?, table.number("at_y")?, table.vector("per_metre")?);
+    Some([0, 1, 2].map(|axis| Profile { value: value[axis], at, per_metre: growth[axis] }))
 }
 
 /// What a traction is; on which side of a pressure bodies lie only the whole case tells ([`super::side`]).

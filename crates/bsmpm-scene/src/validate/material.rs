@@ -1,5 +1,6 @@
 //! Materials and what is doubtful about their parameters.
 
+pub(super) mod band;
 mod law;
 
 use super::{STANDARD_GRAVITY, reduction};

@@ -5,7 +5,7 @@ use super::place;
 use super::rigid;
 use super::site::{normal_of, places};
 use super::strip::moves;
-use crate::case::{Base, Body, Case, Drain, Geometry, Initial, Prescribed, Site, Support};
+use crate::case::{Acting, Base, Body, Case, Drain, Geometry, Initial, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{AnalysisType, Side, Word};
@@ -16,7 +16,7 @@ use bsmpm::step::newmark::Newmark;
 use bsmpm::water::flow::Given;
 
 /// Components of a normal below which it does not hold them.
-const ALONG: f64 = 1e-9;
+pub(super) const ALONG: f64 = 1e-9;
 
 /// Errors and warnings about a case that is valid in its parts.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
@@ -201,6 +201,15 @@ fn thrown_back(case: &Case, report: &mut Report<'_>) {
 
 /// Whether a face, a strip or a prescribed motion holds a component of a body.
 fn holds(case: &Case, component: usize) -> bool {
+    let absorbs = |axis: usize, upper: bool| {
+        let support = case.boundary[axis][usize::from(upper)];
+        matches!(support, Support::Absorbing | Support::FreeField) && reached(case, axis, upper)
+    };
+    holds_at_rest(case, component, None) || (0..2).any(|axis| absorbs(axis, false) || absorbs(axis, true))
+}
+
+/// Whether something other than `except` holds a component of a body for as long as that takes.
+pub(super) fn holds_at_rest(case: &Case, component: usize, except: Option<Acting>) -> bool {
     let holds = |axis: usize, upper: bool| match case.boundary[axis][usize::from(upper)] {
         Support::Fixed => true,
         Support::Roller => axis == component,
@@ -208,8 +217,7 @@ fn holds(case: &Case, component: usize) -> bool {
             let rubs = case.contacts[axis][usize::from(upper)].is_some_and(|contact| contact.friction > 0.0);
             axis == component || rubs
         }
-        Support::Absorbing | Support::FreeField => true,
-        Support::Free | Support::Outflow => false,
+        Support::Absorbing | Support::FreeField | Support::Free | Support::Outflow => false,
     };
     // All around an axis no body goes along the radius as a whole.
     if case.geometry == Geometry::Axisymmetric && component == 0 {
@@ -217,24 +225,24 @@ fn holds(case: &Case, component: usize) -> bool {
     }
     let mut faces = (0..case.grid.dims()).flat_map(|axis| [(axis, false), (axis, true)]);
     faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper))
-        || held_by_strip(case, component)
-        || rigid::hold(case, component)
+        || held_by_strip(case, component, except)
+        || rigid::hold(case, component, except)
 }
 
-/// Whether the footing or a prescribed motion holds a component of a body.
-fn held_by_strip(case: &Case, component: usize) -> bool {
-    let by_strip = |base: Base, site: Site| {
+/// Whether the footing or a prescribed motion other than `except` holds a component of a body.
+fn held_by_strip(case: &Case, component: usize, except: Option<Acting>) -> bool {
+    let by_strip = |(base, site): (Base, Site)| {
         let holds = base == Base::Rough || normal_of(site)[component].abs() > ALONG;
-        holds && places(site, &case.grid).into_iter().any(|at| place::is_at(&case.bodies, &case.grid, at))
+        let at_body = |at: [f64; 3]| place::is_at(&case.bodies, &case.grid, at);
+        holds
+            && match site {
+                Site::Face(face) => reached(case, face.axis, face.upper),
+                Site::Segment { .. } | Site::Plate(_) => places(site, &case.grid).into_iter().any(at_body),
+            }
     };
-    let by_motion = |prescribed: &Prescribed| match prescribed.site {
-        site @ (Site::Segment { .. } | Site::Plate(_)) => by_strip(prescribed.base, site),
-        Site::Face(face) => {
-            let holds = prescribed.base == Base::Rough || face.axis == component;
-            holds && reached(case, face.axis, face.upper)
-        }
-    };
-    case.footing.iter().any(|footing| by_strip(footing.base, footing.site)) || case.prescribed.iter().any(by_motion)
+    let footing = case.footing.iter().map(|footing| (footing.base, footing.site));
+    let all = footing.chain(case.prescribed.iter().map(|prescribed| (prescribed.base, prescribed.site)));
+    all.enumerate().any(|(number, strip)| Some(Acting::Strip(number)) != except && by_strip(strip))
 }
 
 /// Whether a body reaches into the cells along a face, and so has nodes on it.

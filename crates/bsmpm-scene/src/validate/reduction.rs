@@ -42,7 +42,12 @@ pub(super) fn divisible(case: &Case, record: &Record, report: &mut Report<'_>) {
 
 /// Ends the case with the reduction at the end of the stage that `[strength_reduction]` names, if it does.
 pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) {
-    let Some(table) = root.record("strength_reduction").filter(|table| table.gives("stage")) else { return };
+    let Some(table) = root.record("strength_reduction") else { return };
+    if !table.gives("stage") {
+        let of_stage = ["steps", "drainage"].into_iter().filter(|key| table.gives(key));
+        of_stage.for_each(|key| table.error(key, "has no meaning without stage", report));
+        return;
+    }
     let (Some(name), Some(factor)) = (table.text("stage"), table.number("factor")) else { return };
     let (Some(steps), Some(unloaded)) = (table.count("steps"), table.flag("unloaded")) else { return };
     if case.analysis.regime == Regime::Dynamic {

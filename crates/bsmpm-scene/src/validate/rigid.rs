@@ -195,6 +195,10 @@ fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, repor
     if is_free && rigid.mass[0] == 0.0 && rigid.force == [0.0; 3] {
         record.error("free", "nothing acts on it: give `mass`, `density`, `force` or `moment`", report);
     }
+    for key in ["ramp", "amplitude"].into_iter().filter(|key| record.gives(key) && rigid.force == [0.0; 3]) {
+        let path = record.path_of(key);
+        report.warn(format!("{path}: there is no `force` or `moment` that would grow: it does nothing"));
+    }
     for key in ["start_velocity", "start_spin"] {
         if record.gives(key) && regime == Some(Regime::QuasiStatic) {
             record.error(key, "nothing has a velocity in a quasi-static analysis", report);
@@ -400,12 +404,14 @@ fn longest(case: &Case) -> f64 {
     edges(0).max(edges(1))
 }
 
-/// Whether a rigid body that rests or is moved holds a component of a body that lies at it from the start on.
-pub(super) fn hold(case: &Case, component: usize) -> bool {
+/// Whether a rigid body other than `except` that rests or is moved holds a component of a body that lies at it from the
+/// start on.
+pub(super) fn hold(case: &Case, component: usize, except: Option<Acting>) -> bool {
     let at_body = |at: [f64; 2]| case.bodies.iter().any(|body| body.region.contains(at));
     let out = OVERLAP * case.grid.shortest();
     let holds = |(number, rigid): (usize, &Rigid)| {
-        if rigid.free.contains(&true) || case.acts_since(Acting::Rigid(number), 0.0).is_none() {
+        let acting = Acting::Rigid(number);
+        if rigid.free.contains(&true) || Some(acting) == except || case.acts_since(acting, 0.0).is_none() {
             return false;
         }
         let rubs = rigid.friction > 0.0;

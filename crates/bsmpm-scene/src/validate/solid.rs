@@ -39,9 +39,6 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
                 report,
             );
         }
-        for key in ["stress", "pressure"].into_iter().filter(|key| traction.record(key).is_some()) {
-            traction.error(key, "by depth in a plane only: one value", report);
-        }
     }
     for strip in root.records("footing").iter().chain(root.records("prescribed")) {
         for key in ["from", "to"].into_iter().filter(|key| strip.gives(key)) {

@@ -1,5 +1,6 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
+use super::history::NAMELESS;
 use super::{place, reduction, rigid, site, strip};
 use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
 use crate::nearest::hint;
@@ -63,7 +64,14 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
     let drains = root.records("drain").iter().zip(0..).map(|(record, number)| (record, Acting::Drain(number)));
     let inflows = root.records("inflow").iter().zip(0..).map(|(record, number)| (record, Acting::Inflow(number)));
     let water = drains.chain(inflows).filter_map(|(record, acting)| Some((record.text("name")?, acting)));
-    found.into_iter().map(|(name, acting, _)| (name, acting)).chain(rigid).chain(water).collect()
+    let named = found.into_iter().map(|(name, acting, _)| (name, acting)).chain(rigid).chain(water);
+    let mut all: Vec<Named<'_>> = named.collect();
+    // As histories call one without a name.
+    let is_nameless = root.record("footing").is_some_and(|footing| footing.text("name").is_none());
+    if is_nameless && all.iter().all(|(name, _)| *name != NAMELESS) {
+        all.push((NAMELESS, Acting::Strip(0)));
+    }
+    all
 }
 
 fn stage(

@@ -204,7 +204,7 @@ pub const STRIPS: &[Row] = &[
         STRESS,
         "stress = { value = [0, 1], at_y = 1, per_metre = \"2 kPa/m\" }",
         "traction.0.stress.per_metre",
-        "expected a list of two, each a number (Pa/m) or a string with a unit (Pa/m, kPa/m",
+        "expected a list of two (solid: of three), each a number (Pa/m) or a string with a unit (Pa/m, kPa/m",
     ),
     row(
         STRESS,

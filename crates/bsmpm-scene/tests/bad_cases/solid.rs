@@ -209,9 +209,9 @@ pub const SOLID: &[Row] = &[
     row("stress = [0.0, \"1 kPa\", \"-2 kPa\"]", "stress = [0.0, \"-2 kPa\"]", "traction.0.stress", "solid: of three"),
     row(
         "stress = [0.0, \"1 kPa\", \"-2 kPa\"]",
-        "pressure = { value = \"2 kPa\", at_y = 1.0, per_metre = \"1 kPa/m\" }",
-        "traction.0.pressure",
-        "one value",
+        "stress = { value = [0, 0, 1], at_y = 1.0, per_metre = [0, 1] }",
+        "traction.0.stress.per_metre",
+        "solid: of three",
     ),
     row("density = 2000", "density = 2000\nru = 1.2", "material.soil.ru", "allowed: 0 < ru < 1").down(1),
     row("velocity = [0.0, 0.0, -1.0]", "spin = { rate = 1, about = [0, 0] }", "body.0.spin.about", "solid: of three"),

@@ -36,6 +36,14 @@ pub const STAGES: &[Row] = &[
         "no water flows that could stay",
     )
     .down(2),
+    row("factor = 1.25", "factor = 1.25\nsteps = 5", "strength_reduction.steps", "no meaning without stage").down(1),
+    row(
+        "factor = 1.25",
+        "factor = 1.25\ndrainage = \"undrained\"",
+        "strength_reduction.drainage",
+        "no meaning without stage",
+    )
+    .down(1),
     row("factor = 1.25", "factor = 1.25\nsteps = 1001", "strength_reduction.steps", "0 <= steps <= 1000").down(1),
     row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
     row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),

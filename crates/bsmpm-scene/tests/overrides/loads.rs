@@ -1,9 +1,10 @@
 //! What strips, loads and the stress at the start become.
 
 use super::{FULL, STATIC, doubts, set, valid};
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::boundary::Load;
+use bsmpm::kinematics::{PlaneStrain, Solid};
 use bsmpm::material::Profile;
-use bsmpm_scene::{Base, Face, Initial, LoadedLine, Push, Site};
+use bsmpm_scene::{Acting, Base, Face, Initial, LoadedLine, Push, Site};
 
 #[test]
 fn strips_loads_and_initial_stress_arrive() {
@@ -238,6 +239,147 @@ fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
     }
     let foot = [value[0] + growth[0], value[1] + growth[1]];
     assert!((case.tractions[0].largest() - foot[0].hypot(foot[1])).abs() < 1e-9);
+}
+
+/// The same of a cube's side, under water and in shear: the height is z, wherever the grid begins along y.
+#[test]
+fn loads_by_depth_in_a_solid_have_the_resultants_of_a_trapezium() {
+    let cube = r#"
+        geometry = "solid"
+        analysis = { type = "quasi-static", steps = 1 }
+        grid = { lower = [0, -10, 1], upper = [1.5, -9, 2.5], cell = 0.25, order = "quadratic" }
+        boundary = { bottom = "fixed" }
+        [material.soil]
+        model = "hencky"
+        young = "1 MPa"
+        poisson = 0.3
+        [[body]]
+        material = "soil"
+        box = { lower = [0, -10, 1], upper = [1, -9, 2] }
+        points_per_cell = 2
+        [[traction]]
+        rectangle = { lower = [1, -10, 1], upper = [1, -9, 2] }
+    "#;
+    let load = |push: &str| {
+        let case = valid(&format!("{cube}\n{push}"), &[]);
+        bsmpm_scene::model::model::<Solid, 3>(&case).expect("a model").boundary.loads.remove(0)
+    };
+    let sums = |load: &Load<3>, axis: usize| {
+        let pieces = || load.points.iter().zip(&load.traction);
+        let force: f64 = pieces().map(|(point, stress)| point.area * stress[axis]).sum();
+        let moment: f64 = pieces().map(|(point, stress)| point.area * stress[axis] * point.x[2]).sum();
+        let edge = load.points[0].area.sqrt();
+        (force, moment, edge * edge / 12.0)
+    };
+    let water = load("pressure = { value = 0.0, at_y = 2.0, per_metre = \"10 kPa/m\" }");
+    let shear = load("stress = { value = [0.0, -2e3, 0.0], at_y = 2.0, per_metre = [0.0, \"-1 kPa/m\", \"3 kPa/m\"] }");
+    for (load, axis, value, growth) in
+        [(&water, 0, 0.0, -1e4), (&shear, 0, 0.0, 0.0), (&shear, 1, -2e3, -1e3), (&shear, 2, 0.0, 3e3)]
+    {
+        let (force, moment, of_piece) = sums(load, axis);
+        assert!((force - value - growth / 2.0).abs() < 1e-9, "{axis}: {force}");
+        // Of the midpoint rule growth times piece^2/12 is missing.
+        let expected = value / 2.0 + growth / 6.0 + growth * of_piece;
+        assert!((moment - expected).abs() < 1e-9, "{axis}: {moment} for {expected}");
+    }
+    assert!(water.follows && !shear.follows && water.points.len() > 1);
+}
+
+/// Ground between rollers on an absorbing base: what lasts sinks it, unless [initial] has found it or it comes back.
+#[test]
+fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
+    let base = r#"
+        geometry = "plane-strain"
+        analysis = { type = "dynamic", end = 1, dt = 0.01 }
+        grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, order = "quadratic" }
+        boundary = { left = "roller", right = "roller", bottom = "absorbing" }
+        [material.soil]
+        model = "hencky"
+        young = "10 MPa"
+        poisson = 0.3
+        density = 2000
+        [[body]]
+        material = "soil"
+        box = { lower = [0, 0], upper = [4, 3] }
+        points_per_cell = 2
+    "#;
+    let told = |set: &[&str], of: &str| {
+        let warnings = valid(base, set).warnings;
+        let found: Vec<_> =
+            warnings.iter().filter(|told| told.contains("faces that absorb holds the ground")).collect();
+        assert!(found.len() <= 1 && found.iter().all(|told| told.starts_with(of)), "{found:?}");
+        !found.is_empty()
+    };
+    let strip = |push: &str| format!("traction.0={{ from = [0, 3], to = [2, 3], {push} }}");
+    let (lasting, shear) = (strip("stress = [0, \"-20 kPa\"]"), strip("stress = [1e3, 0], ramp = 0.1"));
+    let back = strip("stress = [0, -1e3], amplitude = [[0.1, 1], [0.2, 0]]");
+    assert!(told(&[&lasting], "traction.0") && !told(&[&shear], "") && !told(&[&back], ""));
+    assert!(told(&[&strip("pressure = 1e3")], "traction.0") && !told(&[&lasting, "boundary.bottom=fixed"], ""));
+    assert!(told(&[&shear, "boundary.left=absorbing", "boundary.right=absorbing"], "traction.0"));
+    let (whole, half) = ("center = [2, 2], radius = 0.5", "center = [2, 3], radius = 0.5");
+    let hole = "body.0.subtract=[{ circle = { center = [2, 2], radius = 0.5 } }, { circle = { center = [2, 3], radius = 0.5 } }]";
+    let round = |circle: &str| format!("traction.0={{ circle = {{ {circle} }}, pressure = 1e3, ramp = 0.1 }}");
+    assert!(!told(&[hole, &round(whole), "body.0.box.upper=[4, 4]"], ""));
+    assert!(told(&[hole, &round(half), "grid.upper=[4, 3]"], "traction.0"));
+    let weight = ["gravity.acceleration=[0, -9.81]", "initial.gravity=\"elastic\""];
+    assert!(!told(&[&[&*lasting], &weight[..]].concat(), ""), "in the equilibrium of the start");
+    let grows = strip("stress = [0, -1e3], ramp = 0.1");
+    assert!(told(&[&[&*grows], &weight[..]].concat(), "traction.0"));
+    assert!(told(&["point_load.0={ at = [1, 3], force_path = [[0.1, 0, 5], [0.2, 0, 3]] }"], "point_load.0"));
+    let foot = |path: &str| format!("footing={{ from = [1, 3], to = [2, 3], path = {path} }}");
+    assert!(told(&[&foot("[[0.1, 0, -0.01]]")], "footing"));
+    assert!(!told(&[&foot("[[0.1, 0, -0.01], [0.2, 0, 0]]")], ""));
+    let block = "name = \"block\", polygon = [[1, 3], [2, 3], [2, 4], [1, 4]]";
+    assert!(told(&[&format!("rigid.0={{ {block}, displacement = [0, -0.1] }}")], "rigid.0"));
+    assert!(told(&[&format!("rigid.0={{ {block}, mass = 10, free = [\"y\"], force = [0, -5] }}")], "rigid.0"));
+}
+
+/// A footing without a name is `footing` to stages as to histories; a ramp of no force does nothing, and is told so.
+#[test]
+fn names_and_ramps_of_what_has_none() {
+    let footing = "footing={ from = [0, 1], to = [2, 1], displacement = [0, -0.1] }";
+    let named = "traction.0={ name = \"footing\", from = [0, 1], to = [2, 1], stress = [0, -1] }";
+    let release = "stage=[{ at = 0.5, release = [\"footing\"] }]";
+    let released = |set: &[&str]| valid(STATIC, &[set, &[release]].concat()).stages[0].release.clone();
+    assert_eq!(released(&[footing]), [("footing".to_owned(), Acting::Strip(0))]);
+    assert_eq!(released(&[footing, named]), [("footing".to_owned(), Acting::Load(0))], "what was given the name");
+    let block = |more: &str| {
+        let block = format!("rigid.0={{ name = \"block\", polygon = [[0, 1], [1, 1], [1, 3], [0, 3]], {more} }}");
+        valid(STATIC, &[&block]).warnings.join(" ").contains("does nothing")
+    };
+    assert!(block("amplitude = [[1, 1]]") && block("ramp = 0.5") && !block("friction = 0.1"));
+    assert!(!block("ramp = 0.5, free = [\"y\"], force = [0, -1]"));
+}
+
+/// What a rigid body does to the columns of the free field is seen along its way, too.
+#[test]
+fn rigid_bodies_stay_out_of_the_free_field_on_their_way() {
+    let base = r#"
+        geometry = "plane-strain"
+        analysis = { type = "dynamic", end = 1, dt = 0.01 }
+        grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, order = "quadratic" }
+        boundary = { left = "free-field", right = "free-field", bottom = "fixed" }
+        shaking = { acceleration = [[0, 0, 0], [1, 1, 0]] }
+        [material.soil]
+        model = "hencky"
+        young = "10 MPa"
+        poisson = 0.3
+        density = 2000
+        [[body]]
+        material = "soil"
+        box = { lower = [0, 0], upper = [4, 3] }
+        points_per_cell = 2
+    "#;
+    let refused = |more: &str| {
+        let block = format!("rigid.0={{ name = \"block\", polygon = [[1, 3], [2, 3], [2, 4], [1, 4]], {more} }}");
+        let told = set(base, &[&block]).err().map(|errors| format!("{errors:?}")).unwrap_or_default();
+        let of = |side: &str| told.contains(&format!("boundary.{side}")) && told.contains("a rigid body acts");
+        ["left", "right"].map(of)
+    };
+    assert_eq!(refused("friction = 0.1"), [false; 2]);
+    assert_eq!(refused("path = [[0.1, -0.6, 0], [0.2, 0, 0]]"), [true, false]);
+    assert_eq!(refused("displacement = [1.6, 0]"), [false, true]);
+    assert_eq!(refused("rotation = [[1, 90]], about = [3, 3.5]"), [false, true]);
 }
 
 /// A wall on a fixed base, and an inclined base that a plane of symmetry cuts: the nodes of the edge hold a part.

@@ -1,6 +1,6 @@
 //! What materials become: laws by their words, heights, reduced strength.
 
-use super::{FULL, STATIC, set, valid};
+use super::{FULL, ROUND, STATIC, set, valid};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Law, Match, Material, Separation};
 use bsmpm::model::Regime;
@@ -77,6 +77,35 @@ fn softening_strengths() {
     }
     let case = with("residual_cohesion = 0, softening_strain = 1e-5").expect("a valid case");
     assert!(case.warnings.iter().any(|told| told.contains("drops at once")), "{:?}", case.warnings);
+}
+
+/// The width of a band was measured in plane strain, with some methods and splines, and not under what pushes.
+#[test]
+fn band_widths_are_warned_of_where_they_were_not_measured() {
+    let clay = "material.soil={ model = \"sensitive-clay\", young = 1e7, poisson = 0.3, cohesion = 1e4, density = 2e3, \
+                sensitivity = 3, softening_strain = 2, band_width = 0.1 }";
+    let told = |base: &str, set: &[&str]| {
+        let warnings = valid(base, &[&[clay], set].concat()).warnings;
+        let found: Vec<_> = warnings.into_iter().filter(|told| told.contains("do the work of 2 of them")).collect();
+        assert!(found.len() <= 1, "{found:?}");
+        found.concat()
+    };
+    let with = |method: &str, more: &[&str]| {
+        told(STATIC, &[&[&*format!("stabilisation.method={method}")], &["grid.cell=0.5"], more].concat())
+    };
+    assert!(["consistent-f-bar", "f-bar", "subgrid-f-bar"].iter().all(|method| with(method, &[]).is_empty()));
+    for (found, expected) in [
+        (with("modified-f-bar", &[]), "that of 1.3, -35 %"),
+        (with("none", &[]), "that of 3.0, +50 %"),
+        (with("f-bar-zhao", &[]), "it never was"),
+        (with("f-bar", &["grid.order=linear"]), "that of 2.25, +12 %"),
+        (with("f-bar", &["footing={ from = [0.5, 1], to = [1, 1], displacement = [0, -0.1] }"]), "under a strip"),
+        (told(ROUND, &["grid.cell=0.25", "stabilisation.method=f-bar"]), "in \"axisymmetric\" it never was"),
+    ] {
+        assert!(found.contains(expected), "{expected}: {found}");
+    }
+    let platen = "footing={ from = [0, 1], to = [2, 1], displacement = [0, -0.1] }";
+    assert!(with("f-bar", &[platen]).is_empty());
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod factor_of_safety;
 mod faults;
 mod free_field;
 mod indicators;
+mod laws;
 mod lifts_on_soft_ground;
 mod lock;
 mod memory;

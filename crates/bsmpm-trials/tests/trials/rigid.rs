@@ -50,6 +50,9 @@ bottom = "fixed"
 [solver]
 tolerance = 1e-12
 force_tolerance = 1e-9
+[[stage]]
+at = 0.06
+reset_displacements = true
 [[history]]
 quantity = "rigid-force"
 rigid = "block"
@@ -101,6 +104,8 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
     let [x, y, moment] = ["roller-x", "roller-y", "rigid-moment"].map(|name| at(&one, name, 0.12));
     assert!(x > 0.25 * y && moment > 0.25 * 0.5 * y, "{x} {y} {moment}");
     assert!((at(&one, "rigid-displacement-x", 0.12) - 0.05).abs() < 1e-12);
+    let [before, after] = [0.06, 0.12].map(|t| at(&one, "rigid-displacement-y", t));
+    assert!((before + 0.03).abs() < 1e-12 && after.abs() < 1e-12, "{before:e}, from the stage on {after:e}");
     assert!(at(&one, "rigid-work", 0.12) > 0.0, "it goes into the soil");
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&one, name, 0.12).abs());
     assert!(closure < 1e-6 * external, "{closure:e} of {external:e}");

@@ -371,3 +371,39 @@ fn a_slope_in_which_water_flows_starts_as_one_in_which_it_rests() {
     let off = stresses(&wet).concat().into_iter().zip(stresses(&dry).concat()).map(|(a, b)| (a - b).abs());
     assert!(off.fold(0.0, f64::max) < 1e-9 * largest);
 }
+
+/// The start of the slope between rollers, without a stabilisation, whose exponent would be another one: as in plane
+/// strain, by as much as either is out of balance.
+#[test]
+fn a_slope_in_space_starts_as_in_plane_strain() {
+    let stress = |name: &str, at: &str| format!("[[history]]\nquantity = \"stress\"\nname = \"{name}\"\nat = {at}\n");
+    let plane = changed(SAND, "\"consistent-f-bar\"", "\"none\"");
+    let outline = "polygon = [[0, 0], [32, 0], [32, 2], [24, 2], [8, 10], [0, 10]]";
+    let mut slice = plane.clone();
+    for (of_plane, of_solid) in [
+        ("\"plane-strain\"", "\"solid\""),
+        ("lower = [0, 0]\nupper = [32, 12]", "lower = [0, 0, 0]\nupper = [32, 2, 12]"),
+        (outline, &format!("extrude = {{ {outline}, along = \"y\", from = 0, to = 2 }}")),
+        ("[0, -9.81]", "[0, 0, -9.81]"),
+        ("bottom = \"fixed\"", "bottom = \"fixed\"\nfront = \"roller\"\nback = \"roller\""),
+    ] {
+        slice = changed(&slice, of_plane, of_solid);
+    }
+    let plane = plane + &stress("toe", "[22, 1]") + &stress("middle", "[14, 3]");
+    let slice = slice + &stress("toe", "[22, 1, 1]") + &stress("middle", "[14, 1, 3]");
+    let [(of_plane, plane), (of_slice, slice)] = [plane, slice].map(|case| {
+        let scratch = Scratch::with_case(&case);
+        scratch.direct(&["case.toml", "-q", "-o", "out", "--max-steps", "1"]).expect(75);
+        (initial(&scratch, "out"), history(&scratch.path("out")))
+    });
+    assert!(of_plane.settling.is_some() && of_slice.settling.is_some() && of_slice.unbalance < 1e-4, "{of_slice:?}");
+    for place in ["toe", "middle"] {
+        let vertical = at(&plane, &format!("{place}-yy"), 0.0);
+        for (a, b) in [("xx", "xx"), ("yy", "zz"), ("zz", "yy"), ("xy", "xz")] {
+            let [a, b] = [at(&plane, &format!("{place}-{a}"), 0.0), at(&slice, &format!("{place}-{b}"), 0.0)];
+            println!("{place}: {a} {b}: {:e}", (a - b) / vertical);
+            assert!((a - b).abs() < 1e-4 * vertical.abs(), "{place}: {a} and {b}");
+        }
+        assert!(at(&plane, &format!("{place}-xy"), 0.0) > 0.1 * vertical.abs(), "k0 alone has no shear");
+    }
+}

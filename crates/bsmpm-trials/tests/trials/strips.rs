@@ -1,6 +1,7 @@
 //! Strips that rub and let go on the real program, and the histories of strips by name.
 
 use crate::support::Scratch;
+use crate::support::cases::changed;
 use crate::support::results::history;
 
 /// A block that a strip presses, drags, leaves and meets again.
@@ -132,6 +133,37 @@ fn a_strip_that_rubs_and_lets_go_is_the_same_on_any_ranks_by_newton_and_after_re
     assert!(text("three") == text("part"));
 }
 
+/// The plate as a stage applies it, before it moves, and another one lets it go while it rubs: it holds in
+/// between only.
+#[test]
+fn a_strip_that_rubs_is_applied_and_released_by_stages_on_two_ranks_and_over_restarts() {
+    let path = "path = [[0.2, 0.0, 0.0], [0.4, 0.0, -0.004], [0.8, 0.008, -0.004]]";
+    let staged = changed(
+        DRAGGED,
+        "path = [[0.2, 0.0, -0.004], [0.6, 0.008, -0.004], [0.75, 0.008, 0.02], [1.0, 0.008, -0.004]]",
+        path,
+    ) + "[[stage]]\nat = 0.2\napply = [\"plate\"]\n[[stage]]\nat = 0.7\nrelease = [\"plate\"]\n";
+    let scratch = Scratch::with_case(&staged);
+    scratch.goes_on(2, &["3", "9", "16"]);
+    scratch.direct(&["case.toml", "-q", "-o", "one"]).expect(0);
+    let [one, two] = ["one", "whole2"].map(|run| history(&scratch.path(run)));
+    for name in ["reaction-x", "reaction-y", "work"] {
+        let (a, b) = (one.get(name).unwrap(), two.get(name).unwrap());
+        let scale = a.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        assert!(scale > 0.0 && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-8 * scale), "{name}");
+    }
+    let (time, [x, y]) =
+        (two.get("time").unwrap(), ["x", "y"].map(|axis| two.get(&format!("reaction-{axis}")).unwrap()));
+    let mut slid = 0;
+    for (row, t) in time.iter().enumerate() {
+        let acts = *t > 0.2 + 1e-9 && *t < 0.7 + 1e-9;
+        assert_eq!(acts, y[row] < 0.0, "t = {t}: {}", y[row]);
+        assert!(x[row].abs() <= 0.4 * -y[row] * (1.0 + 1e-6), "t = {t}: {} {}", x[row], y[row]);
+        slid += usize::from(acts && (x[row] / y[row]).abs() > 0.4 * (1.0 - 1e-6));
+    }
+    assert!(slid >= 2, "{slid}");
+}
+
 /// A smooth strip on clay whose strength follows the rate, in 40 steps.
 const RATED: &str = r#"geometry = "plane-strain"
 [analysis]
@@ -193,4 +225,69 @@ fn a_strip_carries_more_by_the_rate_in_quasi_static_time() {
     let still = end("still", &[]);
     let gained = (fast - slow) / (0.1 * still);
     assert!((gained - 1.0).abs() < 2e-3, "{slow} {fast} {still}: {gained}");
+}
+
+/// Time (s) and acceleration of the ground, m/s2, linear between.
+const SHAKING: [(f64, f64); 4] = [(0.0, 0.0), (0.05, 2.0), (0.15, -2.0), (0.2, 0.0)];
+const STEP: f64 = 0.01;
+
+/// s, m: where the ground is after every step, by the exact integral of its acceleration.
+fn ground() -> Vec<(f64, f64)> {
+    let acceleration = |t: f64| {
+        let rows = SHAKING.iter().zip(&SHAKING[1..]).find(|(from, to)| from.0 <= t && t <= to.0);
+        rows.map_or(0.0, |(from, to)| from.1 + (to.1 - from.1) * (t - from.0) / (to.0 - from.0))
+    };
+    let (mut u, mut v, mut moved) = (0.0, 0.0, vec![(0.0, 0.0)]);
+    for step in 0..40 {
+        let [from, to] = [step, step + 1].map(|step| acceleration(f64::from(step) * STEP));
+        u += v * STEP + (2.0 * from + to) / 6.0 * STEP * STEP;
+        v += (from + to) / 2.0 * STEP;
+        moved.push((f64::from(step + 1) * STEP, u));
+    }
+    moved
+}
+
+/// A base that goes as the ground does, and the frame that goes with it: what the top does beside the base is the same,
+/// the nearer the smaller the cells are, across which the one block moves and the other does not.
+#[test]
+fn a_base_motion_is_the_shaking_of_that_ground() {
+    let run = |cell: f64, base: &str| {
+        let case = format!(
+            r#"
+            geometry = "plane-strain"
+            analysis = {{ type = "dynamic", end = 0.4, dt = {STEP} }}
+            grid = {{ lower = [-0.5, 0], upper = [3.5, 2.5], cell = {cell}, order = "quadratic" }}
+            {base}
+            [material.soil]
+            model = "hencky"
+            young = "1 MPa"
+            poisson = 0.3
+            density = 2000
+            [[body]]
+            material = "soil"
+            box = {{ lower = [0, 0], upper = [3, 2] }}
+            points_per_cell = 2
+            [[history]]
+            quantity = "displacement"
+            name = "top"
+            at = [1.5, 2]
+            "#
+        );
+        let scratch = Scratch::with_case(&case);
+        scratch.direct(&["case.toml", "-q", "-o", "out"]).expect(0);
+        history(&scratch.path("out")).get("top-x").unwrap().to_vec()
+    };
+    let rows: Vec<String> = SHAKING.iter().map(|(t, a)| format!("[{t}, {a}, 0]")).collect();
+    let shaking = format!("boundary = {{ bottom = \"fixed\" }}\nshaking = {{ acceleration = [{}] }}", rows.join(", "));
+    let ground = ground();
+    let path: Vec<String> = ground.iter().map(|(t, u)| format!("[{t}, {u}, 0]")).collect();
+    let motion = format!("prescribed = [{{ face = \"bottom\", path = [{}] }}]", path.join(", "));
+    for (cell, most) in [(0.25, 0.01), (0.125, 0.003)] {
+        let (beside, whole) = (run(cell, &shaking), run(cell, &motion));
+        let largest = beside.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        let apart = ground.iter().zip(beside.iter().zip(&whole)).map(|((_, ground), (u, v))| (v - ground - u).abs());
+        let apart = apart.fold(0.0, f64::max) / largest;
+        println!("cells of {cell} m: {apart:e} of {largest} m");
+        assert!(largest > 8e-3 && apart < most, "cells of {cell} m: {apart:e} of {largest} m");
+    }
 }

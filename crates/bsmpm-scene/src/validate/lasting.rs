@@ -1,0 +1,106 @@
+//! What lasts where only faces that absorb hold: they hold what `[initial]` has found, and let the ground drift away
+//! under the rest.
+
+use super::physics::{ALONG, holds_at_rest};
+use super::place::{along, ring};
+use super::site::{normal, normal_of};
+use crate::case::{Acting, Case, Initial, LoadedLine, MotionPath, Push, Rigid, Shares, Site, Support, Traction};
+use crate::record::Record;
+use crate::report::Report;
+use crate::surfaces::name_of_strip;
+
+/// Warns of every load and motion that does not end as it began along an axis that nothing else holds.
+pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+    if !case.is_ever(Support::Absorbing) && !case.is_ever(Support::FreeField) {
+        return;
+    }
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
+        let held = holds_at_rest(case, axis, None);
+        for what in loads(case, axis).filter(|_| !held).chain(rigid(case, root, axis)) {
+            report.warn(format!(
+                "{what}: does not end as it began, and along {name} nothing but faces that absorb holds the ground, which \
+                 sinks under it as long as it lasts (strip of 4 m, 20 kPa, 10 MPa: 89 mm in .8 s, 193 in 1.6 s): fix a face \
+                 far enough away, or let it end with what [initial] has found"
+            ));
+        }
+        for what in strips(case, axis) {
+            report.warn(format!(
+                "{what}: stays away from where it began, and along {name} nothing else but faces that absorb holds the \
+                 ground, which goes with it as a whole until nothing presses: fix a face far enough away, or let it come \
+                 back"
+            ));
+        }
+    }
+}
+
+/// Tractions and point loads that last along an axis.
+fn loads(case: &Case, axis: usize) -> impl Iterator<Item = String> {
+    let tractions = case.tractions.iter().enumerate().map(move |(k, of)| {
+        (format!("traction.{k}"), of.ramp, &of.amplitude, net(case, of, axis).abs() > ALONG * of.largest())
+    });
+    let forces = case.point_loads.iter().enumerate();
+    let forces = forces.map(move |(k, of)| (format!("point_load.{k}"), of.ramp, &of.amplitude, of.force[axis] != 0.0));
+    let all = tractions.chain(forces).enumerate();
+    let lasting = all.filter(move |(number, (_, ramp, amplitude, pushes))| {
+        let acts = case.acts_since(Acting::Load(*number), 0.0) == Some(0.0);
+        *pushes && lasts(case, (*ramp, amplitude), axis, acts)
+    });
+    lasting.map(|(_, (name, ..))| name)
+}
+
+/// Whether the share of a load at the end is not the one that `[initial]` has found.
+fn lasts(case: &Case, (ramp, amplitude): (f64, &Shares), axis: usize, acts_at_start: bool) -> bool {
+    let is_found = acts_at_start && (case.settles || case.initial == Some(Initial::Elastic));
+    let first = match amplitude.first() {
+        Some((t, share)) if *t == 0.0 => share[axis],
+        None if ramp == 0.0 => 1.0,
+        _ => 0.0,
+    };
+    let last = amplitude.last().map_or(1.0, |(_, share)| share[axis]);
+    last != if is_found { first } else { 0.0 }
+}
+
+/// Pa  what a traction pushes with along an axis, in the mean over its places.
+fn net(case: &Case, traction: &Traction, axis: usize) -> f64 {
+    let (lower, upper) = (case.grid.lower(), case.grid.upper());
+    let places: Vec<([f64; 2], [f64; 2])> = match traction.line {
+        LoadedLine::Segment { from, to } => along([from, to]).map(|at| (at, normal(from, to))).collect(),
+        LoadedLine::Circle { center, radius } => {
+            let inside = |at: &[f64; 2]| (0..2).all(|k| lower[k] <= at[k] && at[k] <= upper[k]);
+            ring(center, radius).filter(inside).map(|at| (at, [0, 1].map(|k| (center[k] - at[k]) / radius))).collect()
+        }
+        LoadedLine::Plate(_) => Vec::new(), // of a solid, of which no face absorbs
+    };
+    let pushed = |([_, y], normal): &([f64; 2], [f64; 2])| match traction.push {
+        Push::Stress(stress) => stress[axis].at(*y),
+        Push::Pressure { profile, side } => side * profile.at(*y) * normal[axis],
+    };
+    places.iter().map(pushed).sum::<f64>() / places.len().max(1) as f64
+}
+
+/// Rigid bodies that push along an axis, or stay away from where they began.
+fn rigid(case: &Case, root: &Record, axis: usize) -> impl Iterator<Item = String> {
+    let pushes = move |(number, of): (usize, &Rigid)| {
+        let moves = of.path.rows.last().is_some_and(|(_, moved)| moved[axis] != 0.0);
+        let acting = Acting::Rigid(number);
+        let acts = case.acts_since(acting, 0.0) == Some(0.0);
+        let pushes = moves || of.force[axis] != 0.0 && lasts(case, (of.ramp, &of.amplitude), axis, acts);
+        pushes && !holds_at_rest(case, axis, Some(acting))
+    };
+    // With gravity all of them are warned of.
+    let all = case.rigid.iter().enumerate().zip(root.records("rigid")).filter(|_| case.gravity.is_none());
+    all.filter(move |(rigid, _)| pushes(*rigid)).map(|(_, record)| record.path.clone())
+}
+
+/// The footing and prescribed motions whose last place along an axis is not the first, and beside which nothing holds.
+fn strips(case: &Case, axis: usize) -> impl Iterator<Item = String> {
+    let footing = case.footing.iter().map(|of| (of.site, &of.path));
+    let all = footing.chain(case.prescribed.iter().map(|of| (of.site, &of.path))).enumerate();
+    let stays_away = move |(number, (site, path)): &(usize, (Site, &MotionPath))| {
+        // What is stuck to a face goes along with it, and what lies before it is pushed.
+        let pushes = !matches!(site, Site::Face(_)) || normal_of(*site)[axis] != 0.0;
+        let moved = path.rows.last().is_some_and(|(_, moved)| moved[axis] != 0.0);
+        pushes && moved && !holds_at_rest(case, axis, Some(Acting::Strip(*number)))
+    };
+    all.filter(stays_away).map(move |(number, _)| name_of_strip(case, number))
+}
