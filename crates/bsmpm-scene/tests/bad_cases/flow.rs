@@ -253,3 +253,31 @@ fn water_that_hangs_and_steps_that_are_narrow_are_warned_of() {
     assert!(told(&case(&step(0.5), retention), "from x = 30 to 30.5 is narrower than a cell, 1"));
     assert!(!told(&case(&step(2.0), retention), "narrower than a cell"));
 }
+
+/// The flux in the cell of a surface, where it jumps; deeper it does not.
+#[test]
+fn a_flux_next_to_a_surface_is_warned_of() {
+    let case = |at: &str| {
+        let text = include_str!("../../../../cases/rapid_drawdown.toml").to_owned();
+        let text = text + &format!("\n[[history]]\nquantity = \"flux\"\nat = {at}\n");
+        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
+    };
+    let told = |warnings: &[String]| warnings.iter().any(|told| told.contains("less than a cell from a surface"));
+    assert!(told(&case("[10.0, 14.2]")) && told(&case("[29.8, 9.6]")));
+    assert!(!told(&case("[10.0, 13.5]")) && !told(&case("[0.1, 0.1]")), "a face of the grid is no surface");
+}
+
+/// Ground one cell across under a load of half its stiffness, of which averages leave a way to go sideways.
+#[test]
+fn ground_one_cell_across_under_a_large_load_is_warned_of() {
+    let case = |more: &[(&str, &str)]| {
+        let text = include_str!("../../../../cases/validation/large_consolidation.toml").to_owned();
+        let text = more.iter().fold(text, |text, (from, to)| text.replace(from, to));
+        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
+    };
+    let told = |warnings: &[String]| warnings.iter().any(|told| told.contains("one cell across"));
+    let narrow = [("[0.1, 1.0]", "[0.05, 1.0]"), ("at       = [0.05, 1.0]", "at       = [0.025, 1.0]")];
+    assert!(told(&case(&narrow)) && !told(&case(&[])));
+    assert!(!told(&case(&[&narrow[..], &[("consistent-f-bar", "none")]].concat())));
+    assert!(!told(&case(&[&narrow[..], &[("-500 kPa", "-200 kPa")]].concat())));
+}

@@ -1,11 +1,17 @@
-//! A process that another thread may ask to end, with the signal by which batch systems and people do (TERM).
+//! A process that another thread may ask to end, with the signal by which batch systems and people do (TERM); and that
+//! ends where this program is asked to.
 
-use std::io::{self, ErrorKind};
-use std::process::{Command, ExitStatus};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::io::{self, ErrorKind, Read};
+use std::os::unix::net::UnixStream;
+use std::process::{Command, ExitStatus, exit};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
 
 use rustix::io::Errno;
 use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process, waitid};
+use signal_hook::consts::SIGTERM;
+use signal_hook::{flag, low_level};
 
 /// What a run and those who may stop it share.
 #[derive(Debug, Default)]
@@ -16,6 +22,88 @@ struct StopState {
     is_asked: bool,
     /// while its number is that of no other process
     process: Option<Pid>,
+}
+
+/// The processes of this program, of whichever thread.
+static UNDER_WAY: UnderWay = UnderWay {
+    state: Mutex::new(UnderWayState { watches: false, ends: false, processes: Vec::new() }),
+    ended: Condvar::new(),
+};
+
+struct UnderWay {
+    state: Mutex<UnderWayState>,
+    /// one has ended
+    ended: Condvar,
+}
+
+struct UnderWayState {
+    /// signals to this program are heard
+    watches: bool,
+    /// this program was asked to end
+    ends: bool,
+    processes: Vec<Pid>,
+}
+
+impl UnderWay {
+    fn state(&self) -> MutexGuard<'_, UnderWayState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds what `spawn` starts, which is nothing once this program ends.
+    fn begin<T>(&'static self, spawn: impl FnOnce() -> io::Result<(T, Pid)>) -> io::Result<(T, Pid)> {
+        let mut state = self.state();
+        if !state.watches {
+            self.watch()?;
+            state.watches = true;
+        }
+        if state.ends {
+            return Err(ErrorKind::Interrupted.into());
+        }
+        let begun = spawn()?;
+        state.processes.push(begun.1);
+        Ok(begun)
+    }
+
+    /// Takes one out that has ended, while its number is that of no other process. What it left is nobody's business
+    /// once this program ends.
+    fn end(&self, process: Pid) {
+        let mut state = self.state();
+        state.processes.retain(|other| *other != process);
+        self.ended.notify_all();
+        while state.ends {
+            state = self.ended.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// From now on a first TERM stops the processes and ends this program behind them; a second one ends it at once.
+    fn watch(&'static self) -> io::Result<()> {
+        let (mut told, tells) = UnixStream::pair()?;
+        let again = Arc::new(AtomicBool::new(false));
+        // In this order: the first signal finds `again` unset.
+        flag::register_conditional_default(SIGTERM, Arc::clone(&again))?;
+        flag::register(SIGTERM, again)?;
+        low_level::pipe::register(SIGTERM, tells)?;
+        thread::Builder::new().spawn(move || {
+            if told.read_exact(&mut [0]).is_ok() {
+                self.stop();
+            }
+        })?;
+        Ok(())
+    }
+
+    /// Stops the processes at their last converged states, and ends this program when they have ended.
+    fn stop(&self) {
+        let mut state = self.state();
+        state.ends = true;
+        // Not TERM: who signals the whole group has sent that already, and a second one would cost a run its
+        // checkpoint.
+        state.processes.iter().for_each(|process| _ = kill_process(*process, Signal::USR1));
+        while !state.processes.is_empty() {
+            state = self.ended.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        let _ = low_level::emulate_default_handler(SIGTERM);
+        exit(128 + SIGTERM);
+    }
 }
 
 impl Stop {
@@ -40,8 +128,11 @@ impl Stop {
         if state.is_asked {
             return Err(ErrorKind::Interrupted.into());
         }
-        let mut child = command.spawn()?;
-        let process = Pid::from_child(&child);
+        let (mut child, process) = UNDER_WAY.begin(|| {
+            let child = command.spawn()?;
+            let process = Pid::from_child(&child);
+            Ok((child, process))
+        })?;
         state.process = Some(process);
         drop(state);
         // It is waited for in two steps: until nobody can send it a signal any more, no other process may get its
@@ -49,6 +140,7 @@ impl Stop {
         let ended = || waitid(WaitId::Pid(process), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
         while ended().is_err_and(|error| error == Errno::INTR) {}
         self.state().process = None;
+        UNDER_WAY.end(process);
         child.wait()
     }
 

@@ -61,21 +61,25 @@ pub fn through(soil: Soil<2>) -> Water<2> {
     Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) }
 }
 
-/// A column of the height 1 m, `cells` of them in it, one across, in a grid of `more` cells above it; its top in the
-/// middle of the cell above by the share `cut` of it, which is then drained by surface points, else by the grid's face.
-/// The `load`, Pa, acts on top at once.
+/// A column of the height 1 m, `cells` of them in it, one across; its top in the middle of the cell above by the share
+/// `cut` of it, which is then drained by surface points, else by the grid's face. The `load`, Pa, acts on top at once.
 pub fn column(cells: usize, cut: f64, load: f64, law: PermeabilityLaw) -> Plane {
+    column_of([1, cells], cut, load, law)
+}
+
+/// The same of so many cells across and up.
+pub fn column_of([across, cells]: [usize; 2], cut: f64, load: f64, law: PermeabilityLaw) -> Plane {
     let h = 1.0 / (cells as f64 - 1.0 + cut);
     let is_cut = cut < 1.0;
     let rows = if is_cut { cells + 1 } else { cells };
-    let mut scene = Plane::new([axis(h, 1, 2), axis(h, rows, 2)], hencky(M, 0.0), Regime::QuasiStatic);
-    scene = scene.body([0..1, 0..cells], 3, DENSITY, |x| x * 0.0).rollers([0]).support(Support::roller(1, false));
+    let mut scene = Plane::new([axis(h, across, 2), axis(h, rows, 2)], hencky(M, 0.0), Regime::QuasiStatic);
+    scene = scene.body([0..across, 0..cells], 3, DENSITY, |x| x * 0.0).rollers([0]).support(Support::roller(1, false));
     let surface: Vec<SurfacePoint<2>> =
-        (0..3).map(|k| SurfacePoint::at(at(h * (k as f64 + 0.5) / 3.0, 1.0), h / 3.0)).collect();
+        (0..3 * across).map(|k| SurfacePoint::at(at(h * (k as f64 + 0.5) / 3.0, 1.0), h / 3.0)).collect();
     let mut water = flowing(law);
     let flow = water.flow.as_mut().expect("it flows");
     if is_cut {
-        let normals = vec![at(0.0, 1.0); 3];
+        let normals = vec![at(0.0, 1.0); 3 * across];
         flow.drains.push(Drain { points: surface.clone(), normals, given: Given::StillWater, acts: true });
         let top = cells as f64 - 1.0;
         // Rows of points that follow the surface: those of the cut cell fill its height.

@@ -1,11 +1,13 @@
-//! Where soils of unlike permeability meet, and what tight ones let through there.
+//! Where the pressure and its gradient cannot be followed: soils of unlike permeability that meet inside cells, thin
+//! walls, and the flux in the cells of a surface.
 
-use crate::case::{Body, Case, Flow};
+use crate::case::{Body, Case, Flow, Quantity};
 use crate::region::Edge;
 use crate::report::Report;
 use crate::validate::lines;
-use crate::validate::place::beyond;
+use crate::validate::place::{beyond, is_beyond, is_in};
 use crate::validate::site::normal;
+use crate::words::Measurement;
 use bsmpm::water::flow::Soil;
 use std::collections::BTreeMap;
 
@@ -21,8 +23,10 @@ const BESIDE: f64 = 1e-3;
 /// Places between the two sides that are looked at in a cell.
 const LOOKS: usize = 10;
 
-/// Warns of soils that meet where the pressure cannot follow what their permeabilities ask for; in a plane.
+/// Warns of soils that meet where the pressure cannot follow what their permeabilities ask for, in a plane; and of
+/// fluxes that are wanted where they jump.
 pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    at_surfaces(case, report);
     if case.grid.dims() != 2 {
         return;
     }
@@ -43,6 +47,27 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         report.warn(format!("material.{a} and material.{b} {message}"));
     }
     thin(case, flow, report);
+}
+
+/// Warns of histories of the flux in the cells of a surface.
+fn at_surfaces(case: &Case, report: &mut Report<'_>) {
+    let (grid, cell) = (&case.grid, case.grid.shortest());
+    let is_bare =
+        |place: [f64; 3]| is_beyond(grid, place).is_none() && !case.bodies.iter().any(|body| is_in(body, grid, place));
+    for history in &case.histories {
+        let Quantity::Pore { what: Measurement::Flux, at } = history.quantity else { continue };
+        let around = (0..27).map(|n| [n / 9, n / 3 % 3, n % 3].map(|k| f64::from(k) - 1.0));
+        let mut places = around.map(|off| std::array::from_fn(|axis| at[axis] + cell * off[axis]));
+        if places.any(is_bare) {
+            report.warn(format!(
+                "history \"{}\": the flux at {:.3?} is less than a cell from a surface: it is right there as long as points fill the cell \
+                 as at the start; under strains it jumps as rows of points come and go (by a third under a load that takes .3 of \
+                 the height); take a place more than a cell ({cell} m) inside, or \"water-outflow\" of the drain for what crosses",
+                history.name,
+                &at[..grid.dims()]
+            ));
+        }
+    }
 }
 
 /// Warns of walls and gaps between bodies in which water flows that are so thin that it goes through them.
