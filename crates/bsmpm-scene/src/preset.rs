@@ -6,6 +6,7 @@
 
 mod axis;
 mod cells;
+mod rigid;
 mod scene;
 
 use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
@@ -133,10 +134,10 @@ pub(crate) fn fill(
     filling.put("solver", &["tolerance"], energy, "");
     filling.put("solver", &["force_tolerance"], force, "");
     let filled = filling.filled;
-    if filled && !record.records("rigid").is_empty() {
+    if filled && record.records("rigid").iter().any(|rigid| rigid.gives("free")) {
         report.warn(format!(
-            "{ACCURACY}: it knows no rigid bodies: give [grid] cells that are small beside them, and steps in which they \
-             go a small part of one"
+            "{ACCURACY}: it knows no way of rigid bodies that are free: give [grid] cells that are small beside them, and \
+             steps in which they go a small part of one"
         ));
     }
     if !filled {

@@ -145,10 +145,11 @@ fn cells_fit_between_faces_that_stay() {
 
 #[test]
 fn what_no_word_knows_is_told() {
-    let disc = "rigid=[{ name = \"disc\", circle = { center = [0.4, 0.1], radius = 0.02 } }]";
-    let case = valid(COLUMN, &[disc]);
-    let told = |case: &Case| case.warnings.iter().any(|warning| warning.contains("it knows no rigid bodies"));
-    assert!(told(&case) && !told(&valid(COLUMN, &[])), "{:?}", case.warnings);
+    let disc = "rigid=[{ name = \"disc\", circle = { center = [0.4, 0.1], radius = 0.02 }";
+    let of = |further: &str| valid(COLUMN, &[&format!("{disc}{further} }}]")]);
+    let told =
+        |case: &Case| case.warnings.iter().any(|warning| warning.contains("no way of rigid bodies that are free"));
+    assert!(told(&of(", free = [\"x\"], mass = 1.0")) && !told(&of("")));
 }
 
 #[test]
@@ -273,6 +274,43 @@ fn a_circular_plate_has_the_cells_of_a_strip_as_wide() {
     assert!(is_fine(&plate.grid.axes[0], [0.0, 1.25], 0.25) && plate.warnings.is_empty(), "{:?}", plate.warnings);
     let ring = valid(FOOTING, &["accuracy=draft", "geometry=axisymmetric", "footing.from=[0.5, 10.0]"]);
     assert!(is_fine(&ring.grid.axes[0], [0.5, 1.0], 0.0625), "{:?}", ring.grid.axes[0]);
+}
+
+/// A rigid punch has the cells of a strip as wide; a pipe those around it and its way, a thin plate in the ground two
+/// across, a wall that turns those where its end comes to.
+#[test]
+fn rigid_bodies_have_small_cells_around_the_edges_that_soil_lies_at() {
+    let of = |rigid: &str, hole: &str| {
+        let (ground, rest) = FOOTING.split_once("[footing]").unwrap();
+        let rest = rest.split_once("[boundary]").unwrap().1.split_once("[[history]]").unwrap().0;
+        let text = format!("{ground}[boundary]{rest}");
+        let cut = format!("body.0.subtract=[{hole}]");
+        valid(&text, &["accuracy=draft", &format!("rigid=[{{ name = \"body\", {rigid} }}]"), &cut])
+    };
+    let punch = of("polygon = [[-1, 10], [1, 10], [1, 11], [-1, 11]], displacement = [0.0, -2.0]", "");
+    let strip = valid(FOOTING, &["accuracy=draft"]);
+    assert!(is_fine(&punch.grid.axes[0], [0.0, 1.25], 0.25), "{:?}", punch.grid.axes[0]);
+    assert!(is_fine(&punch.grid.axes[1], [7.75, 10.0], 0.25), "{:?}", punch.grid.axes[1]);
+    let steps = |case: &Case| (case.analysis.end / case.analysis.dt).round();
+    assert_eq!(steps(&punch), steps(&strip));
+    assert!(punch.warnings.is_empty(), "{:?}", punch.warnings);
+    let circle = "circle = { center = [5, 5], radius = 0.8 }";
+    let pipe = of(&format!("{circle}, displacement = [0.0, 1.0]"), &format!("{{ {circle} }}"));
+    assert!(
+        is_fine(&pipe.grid.axes[0], [4.0, 6.0], 0.2) && is_fine(&pipe.grid.axes[1], [4.0, 7.0], 0.2),
+        "{:?}",
+        pipe.grid
+    );
+    let plate = "polygon = [[4, 5], [6, 5], [6, 5.2], [4, 5.2]]";
+    let plate = of(plate, &format!("{{ {plate} }}"));
+    assert!(is_fine(&plate.grid.axes[1], [5.0, 5.2], 0.1), "{:?}", plate.grid.axes[1]);
+    // By a right angle about its lower end: 2 m to the left.
+    let wall = "polygon = [[5, 7], [5.5, 7], [5.5, 9], [5, 9]]";
+    let hole = format!("{{ {wall} }}");
+    let turns = of(&format!("{wall}, about = [5, 7], rotation = [[0.5, 0], [1.0, 90]]"), &hole);
+    let still = of(wall, &hole);
+    let cells = |case: &Case| case.grid.axes[0].cells();
+    assert!(cells(&turns) > cells(&still) && steps(&turns) > 100.0 && steps(&still) == 10.0, "{}", steps(&turns));
 }
 
 /// What is small follows each strip or load and its way, not the shortest of them.

@@ -1,5 +1,6 @@
-//! `bsmpm fos`: the factor of safety of a case by strength reduction. The case is read in `subject`, factors are chosen
-//! in `search`, trials are made in `trial` and judged in `curve`, results are set in `report` and drawn in `picture`.
+//! `bsmpm fos`: the factor of safety of a case by strength reduction. The case is read in `subject`, refused in
+//! `refusal`, factors are chosen in `search`, trials are made in `trial` and judged in `curve`, results are set in
+//! `report` and drawn in `picture`.
 //!
 //! Loading soil is path dependent, so every trial carries its load from zero, or goes on from the end of a stage that
 //! was made with the whole strength: a state of another strength is no state on the way. What could be saved that way
@@ -20,6 +21,7 @@ mod curve;
 mod guess;
 mod jobs;
 mod picture;
+mod refusal;
 mod report;
 mod search;
 mod subject;
@@ -153,6 +155,7 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     let solver = SolverProgram { command: &command, side_by_side: true };
     let stage = (arguments.stage.as_deref(), arguments.undrained);
     let subject = Subject::read(&arguments.case, &arguments.set, (plan.from, stage))?;
+    let plan = SearchPlan { softens: subject.softens, ..plan };
     solver.check()?;
     let output = arguments.directory();
     launch::make(&output)?;
@@ -185,7 +188,7 @@ impl FosArguments {
         if !(NARROWEST <= width && width <= to - from) {
             return usage(format!("--width {width}: allowed is {NARROWEST} <= WIDTH <= TO - FROM"));
         }
-        Ok(SearchPlan { from, to, width })
+        Ok(SearchPlan { from, to, width, softens: false })
     }
 
     fn directory(&self) -> PathBuf {

@@ -259,6 +259,27 @@ impl Case {
         self.materials.iter().zip(followed).map(of).collect()
     }
 
+    /// The materials that bodies which are there follow once the stages until the time `t` have begun.
+    pub fn followed_at(&self, t: f64) -> impl Iterator<Item = NamedMaterial> {
+        let is_there = |number: usize| {
+            (0..self.bodies.len()).any(|body| self.bodies[body].material == number && self.is_there(body, t))
+        };
+        let there: Vec<bool> = (0..self.materials.len()).map(is_there).collect();
+        self.materials_at(t).into_iter().zip(there).filter_map(|(named, is_there)| is_there.then_some(named))
+    }
+
+    /// Whether a face, a strip or a rigid body rubs once the stages until the time `t` have begun.
+    pub fn rubs_at(&self, t: f64) -> bool {
+        let acts = |what: Acting| self.acts_since(what, t).is_some();
+        let footing = self.footing.iter().map(|footing| footing.contact);
+        let strips = footing.chain(self.prescribed.iter().map(|prescribed| prescribed.contact)).enumerate();
+        let strips = strips.filter(|(number, _)| acts(Acting::Strip(*number)));
+        let strips = strips.filter_map(|(_, contact)| Some(contact?.law.friction));
+        let rigid = self.rigid.iter().enumerate().filter(|(number, _)| acts(Acting::Rigid(*number)));
+        let faces = self.faces_at(t).into_iter().filter_map(|face| Some(face.contact?.friction));
+        faces.chain(strips).chain(rigid.map(|(_, rigid)| rigid.friction)).any(|friction| friction > 0.0)
+    }
+
     /// Whether bodies follow the law of a material at some time.
     pub fn is_followed(&self, material: usize) -> bool {
         let is_made = |number: usize| self.bodies.iter().any(|body| body.material == number);

@@ -1,4 +1,5 @@
-//! Cells that a preset chooses: equal ones, or small ones around strips and loaded segments that grow away from them.
+//! Cells that a preset chooses: equal ones, or small ones around strips, loaded segments and rigid bodies that grow
+//! away from them.
 
 use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};
@@ -141,7 +142,7 @@ impl PresetScene<'_> {
     /// reason.
     fn graded(&self, preset: &Preset, (size, why): (f64, &str), zones: &[Zone]) -> Option<Cells> {
         let (ends, mut wanted, growth) = (self.ends()?, self.wanted(), preset.growth);
-        for segment in self.segments() {
+        for segment in self.segments().filter(|segment| !segment.is_rigid()) {
             // The surface under a strip, or the wall beside it.
             segment.along().into_iter().for_each(|along| wanted[1 - along].push(segment.ends[0][1 - along]));
         }
@@ -171,12 +172,12 @@ impl PresetScene<'_> {
         Some(cells)
     }
 
-    /// Where strips and loaded segments want cells smaller than `size` (m).
+    /// Where strips, loaded segments and rigid bodies want cells smaller than `size` (m).
     fn zones(&self, preset: &Preset, size: f64) -> Option<Vec<Zone>> {
         let ends = self.ends()?;
         let zone = |segment: GradedSegment<'_>| {
             let (width, cut) = self.width(&segment, ends);
-            let cell = width / preset.along;
+            let cell = (width / preset.along).min(segment.thinnest());
             let (reach, places) = (preset.reach * width, self.places(&segment));
             let range = |axis: usize| {
                 let along = || places.iter().map(|place| place[axis]);
@@ -186,7 +187,7 @@ impl PresetScene<'_> {
             let whole = if cut { format!(", {} m cut at a roller", brief(0.5 * width)) } else { String::new() };
             let why = format!(
                 "{} along the width of {}, {} m{whole}; on all of its way and {} of the width around it",
-                preset.along,
+                brief(width / cell),
                 segment.name,
                 brief(width),
                 preset.reach
@@ -196,7 +197,8 @@ impl PresetScene<'_> {
         Some(self.segments().filter_map(zone).collect())
     }
 
-    /// m  Width of a strip or loaded segment; whether it is twice what is there, which a roller cuts in its middle.
+    /// m  Width of a strip, loaded segment or rigid body; whether it is twice what is there, which a roller cuts in its
+    /// middle.
     fn width(&self, segment: &GradedSegment<'_>, ends: [[f64; 2]; 2]) -> (f64, bool) {
         let [from, to] = segment.ends;
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
@@ -215,13 +217,12 @@ impl PresetScene<'_> {
         Some([0, 1].map(|axis| [lower[axis], upper[axis]]))
     }
 
-    /// m  places along x and y at which a grid line is wanted: ends of strips and loaded segments, then sides of
-    /// bodies, if these are of several materials.
+    /// m  places along x and y at which a grid line is wanted: ends of strips and loaded segments, corners of rigid
+    /// bodies, then sides of bodies, if these are of several materials.
     fn wanted(&self) -> [Vec<f64>; 2] {
         let mut wanted = [Vec::new(), Vec::new()];
         for segment in self.segments() {
-            let ends = segment.ends;
-            segment.along().into_iter().for_each(|axis| wanted[axis].extend(ends.map(|end| end[axis])));
+            wanted.iter_mut().zip(segment.lines()).for_each(|(wanted, lines)| wanted.extend(lines));
         }
         if self.materials().count() > 1 {
             for (a, b) in self.sides() {

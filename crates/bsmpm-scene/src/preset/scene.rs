@@ -1,6 +1,7 @@
 //! What of a scene a preset's cells and steps follow from, read from a record in which much may be missing.
 
 use super::Preset;
+use super::rigid::{self, RigidExtent};
 use crate::record::{ListRow, Record};
 use crate::region;
 use crate::schema::LawName;
@@ -24,12 +25,13 @@ pub(super) struct PresetScene<'a> {
     pub root: &'a Record,
 }
 
-/// A strip or a loaded segment.
+/// A strip, a loaded segment or a rigid body.
 pub(super) struct GradedSegment<'a> {
     pub name: String,
     record: &'a Record,
-    /// m
+    /// m  of its width
     pub ends: [[f64; 2]; 2],
+    rigid: Option<RigidExtent>,
 }
 
 impl GradedSegment<'_> {
@@ -37,6 +39,25 @@ impl GradedSegment<'_> {
     pub(super) fn along(&self) -> Option<usize> {
         let [from, to] = self.ends;
         [0, 1].into_iter().find(|&axis| from[1 - axis] == to[1 - axis])
+    }
+
+    /// m  places along x and y at which a grid line is wanted: its ends, of a rigid body the corners at soil
+    pub(super) fn lines(&self) -> [Vec<f64>; 2] {
+        let along = self.along();
+        [0, 1].map(|axis| match &self.rigid {
+            Some(rigid) => rigid.lines.iter().map(|at| at[axis]).collect(),
+            None if along == Some(axis) => self.ends.map(|end| end[axis]).to_vec(),
+            None => Vec::new(),
+        })
+    }
+
+    pub(super) fn is_rigid(&self) -> bool {
+        self.rigid.is_some()
+    }
+
+    /// m  edge of cells of which two lie between soil on either side of it; without end where there is none
+    pub(super) fn thinnest(&self) -> f64 {
+        self.rigid.as_ref().map_or(f64::INFINITY, |rigid| 0.5 * rigid.thickness)
     }
 }
 
@@ -93,7 +114,7 @@ impl<'a> PresetScene<'a> {
         (!corners.is_empty()).then(|| region::bounds(&corners))
     }
 
-    /// Strips and loaded segments.
+    /// Strips, loaded segments, and rigid bodies that are not free.
     pub(super) fn segments(&self) -> impl Iterator<Item = GradedSegment<'a>> + '_ {
         let root = self.root;
         let listed = ["prescribed", "traction"].into_iter().flat_map(move |table| {
@@ -101,9 +122,16 @@ impl<'a> PresetScene<'a> {
             root.records(table).iter().enumerate().map(named)
         });
         let footing = root.record("footing").map(|record| ("footing".to_owned(), record));
-        footing.into_iter().chain(listed).filter_map(|(name, record)| {
-            Some(GradedSegment { name, record, ends: [record.pair("from")?, record.pair("to")?] })
-        })
+        let strips = footing.into_iter().chain(listed).filter_map(|(name, record)| {
+            Some(GradedSegment { name, record, ends: [record.pair("from")?, record.pair("to")?], rigid: None })
+        });
+        let bodies: Vec<[[f64; 2]; 2]> = root.records("body").iter().filter_map(around).collect();
+        let rigid = root.records("rigid").iter().enumerate().filter(|(_, record)| !record.gives("free"));
+        let rigid = rigid.filter_map(move |(number, record)| {
+            let extent = RigidExtent::of(record, &self.ways(record), &bodies)?;
+            Some(GradedSegment { name: format!("rigid.{number}"), record, ends: extent.ends, rigid: Some(extent) })
+        });
+        strips.chain(rigid)
     }
 
     /// m  shortest edge of the cells that the case gives, if it does
@@ -117,13 +145,14 @@ impl<'a> PresetScene<'a> {
         axes.flat_map(|axis| axis.windows(2).map(|pair| pair[1] - pair[0])).reduce(f64::min).filter(|edge| *edge > 0.0)
     }
 
-    /// m  how far each strip or face would come in the whole run at its fastest; part of a cell that it may in a step
+    /// m  how far each strip, face or rigid body would come in the whole run at its fastest; part of a cell that it may
+    /// in a step
     fn moved(&self, preset: &Preset) -> impl Iterator<Item = (f64, f64)> {
         let end = self.end();
         let norm = |[x, y]: [f64; 2]| x.hypot(y);
         let (of_strips, of_faces) = (STRIP_ADVANCE, preset.advance);
         let moved = self.root.record("footing").into_iter().chain(self.root.records("prescribed"));
-        moved.map(move |record| {
+        moved.chain(self.root.records("rigid")).map(move |record| {
             let places = rows(record);
             let speed = |pair: &[(f64, [f64; 2])]| {
                 let ([from, to], t) = ([pair[0], pair[1]], pair[1].0 - pair[0].0);
@@ -132,14 +161,14 @@ impl<'a> PresetScene<'a> {
             };
             let path = places.windows(2).map(speed).fold(0.0, f64::max) * end;
             let steady = record.pair("velocity").map_or(0.0, norm) * end;
-            let way = path + steady + record.pair("displacement").map_or(0.0, norm);
-            (way, if record.pair("from").is_some() { of_strips } else { of_faces })
+            let way = path + steady + record.pair("displacement").map_or(0.0, norm) + turned(record, end);
+            (way, if record.gives("face") { of_faces } else { of_strips })
         })
     }
 
-    /// m  where the ends of a strip come to in the run, at every change of its speed
-    pub(super) fn places(&self, segment: &GradedSegment<'_>) -> Vec<[f64; 2]> {
-        let (end, record) = (self.end(), segment.record);
+    /// m  where what is moved as told comes to in the run, at every change of its speed
+    fn ways(&self, record: &Record) -> Vec<[f64; 2]> {
+        let end = self.end();
         let mut moved = vec![[0.0; 2]];
         for pair in rows(record).windows(2).filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0) {
             let part = ((end - pair[0].0) / (pair[1].0 - pair[0].0)).min(1.0);
@@ -147,8 +176,19 @@ impl<'a> PresetScene<'a> {
         }
         moved.extend(record.pair("velocity").map(|velocity| velocity.map(|v| v * end)));
         moved.extend(record.pair("displacement"));
-        let places = |way: [f64; 2]| segment.ends.map(|at| [at[0] + way[0], at[1] + way[1]]);
-        moved.into_iter().flat_map(places).collect()
+        moved
+    }
+
+    /// m  where the ends of a strip, or the edges of a rigid body at soil, come to in the run
+    pub(super) fn places(&self, segment: &GradedSegment<'_>) -> Vec<[f64; 2]> {
+        let (ends, swing) = match &segment.rigid {
+            Some(rigid) => (&rigid.corners[..], rigid.swing),
+            None => (&segment.ends[..], 0.0),
+        };
+        let ways = self.ways(segment.record);
+        let around = |way: &[f64; 2]| [-swing, swing].map(|by| way.map(|at| at + by));
+        let ways = ways.iter().flat_map(around);
+        ways.flat_map(|way| ends.iter().map(move |at| [at[0] + way[0], at[1] + way[1]])).collect()
     }
 
     /// s  the shortest time between two rows of the ground's acceleration or of a load
@@ -191,6 +231,17 @@ impl<'a> PresetScene<'a> {
         };
         self.materials().filter_map(speed).filter(|speed| speed.is_finite()).reduce(f64::max)
     }
+}
+
+/// m  how far the corner of a rigid body that is farthest from its reference point would turn in the whole run at its
+/// fastest
+fn turned(record: &Record, end: f64) -> f64 {
+    let Some(turns) = record.rows("rotation") else { return 0.0 };
+    let all: Vec<(f64, f64)> =
+        std::iter::once((0.0, 0.0)).chain(turns.iter().map(|row| (row.numbers[0], row.numbers[1]))).collect();
+    let pairs = all.windows(2).filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0);
+    let fastest = pairs.map(|pair| (pair[1].1 - pair[0].1).abs() / (pair[1].0 - pair[0].0)).fold(0.0, f64::max);
+    fastest * end * rigid::radius(record).unwrap_or(0.0)
 }
 
 /// m  ends of the straight sides of a body

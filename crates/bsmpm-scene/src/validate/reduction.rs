@@ -19,11 +19,11 @@ pub(super) fn at_start(root: &Record) -> Option<&Record> {
     root.record("strength_reduction").filter(|table| !table.gives("stage"))
 }
 
-/// Some material has strength that can be divided under the stress that it has.
-pub(super) fn divisible(case: &Case, record: &Record, report: &mut Report<'_>) {
+/// What is there at one of the `times` has strength that can be divided under the stress that it has.
+pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mut Report<'_>) {
     let key = if record.gives("strength_reduction") { "strength_reduction" } else { "stage" };
-    let mut followed = case.materials.iter().enumerate().filter(|(number, _)| case.is_followed(*number));
-    if let Some((_, named)) = followed.find(|(_, named)| !named.material.is_linear()) {
+    let followed = || times.iter().flat_map(|t| case.followed_at(*t));
+    if let Some(named) = followed().find(|named| !named.material.is_linear()) {
         let message = format!(
             "material.{}: its strength and what it was compressed by are one state, which cannot be divided under the \
              stress that it has; of the start: [strength_reduction] without stage",
@@ -31,11 +31,7 @@ pub(super) fn divisible(case: &Case, record: &Record, report: &mut Report<'_>) {
         );
         record.error(key, message, report);
     }
-    let rubs = case.faces_at(case.analysis.end).into_iter().any(|face| face.contact.is_some())
-        || case.footing.iter().any(|footing| footing.contact.is_some())
-        || case.prescribed.iter().any(|prescribed| prescribed.contact.is_some())
-        || case.rigid.iter().any(|rigid| rigid.friction > 0.0);
-    if !rubs && !case.materials.iter().any(|named| named.material.yields()) {
+    if !times.iter().any(|t| case.rubs_at(*t)) && !followed().any(|named| named.material.yields()) {
         report.warn(format!("{}: no material has strength: it does nothing", record.path_of(key)));
     }
 }
@@ -72,7 +68,7 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     if let Some(number) = case.stages.iter().position(|stage| stage.strength_reduction.is_some()) {
         table.error("stage", format!("stage.{number} divides the strength, too: leave one of them out"), report);
     }
-    divisible(case, table, report);
+    divisible(case, &[case.just_before(until)], table, report);
     rest(case, (table, unloaded), report);
     if !case.checks.is_empty() {
         report.note("check", "none", "strength_reduction.stage: they are of the case as it is");

@@ -269,7 +269,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             exchanged(case, (from, to), pair, report);
         }
         if stage.strength_reduction.is_some() {
-            reduction::divisible(case, record, report);
+            let later = case.stages.iter().map(|later| later.at).filter(|at| *at >= stage.at);
+            reduction::divisible(case, &later.collect::<Vec<f64>>(), record, report);
         }
         for &body in &stage.add {
             let named = &case.materials[case.bodies[body].material];

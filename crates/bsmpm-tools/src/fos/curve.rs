@@ -26,6 +26,8 @@ pub(super) struct CurveState {
 pub(super) struct FactorCurve {
     /// the displacement of the elastic body
     elastic: f64,
+    /// whether a branch after failure leads back to a kink
+    has_branch: bool,
     states: Vec<CurveState>,
 }
 
@@ -47,12 +49,21 @@ pub(super) struct Kink {
 impl FactorCurve {
     /// A curve without trials yet, of a body whose `elastic` displacement is positive.
     pub fn new(elastic: f64) -> Self {
-        Self { elastic, states: Vec::new() }
+        Self { elastic, has_branch: true, states: Vec::new() }
+    }
+
+    /// That of a body whose strength falls as it moves: how far it goes once it has failed is no measure of anything.
+    pub fn without_branch(self) -> Self {
+        Self { has_branch: false, ..self }
     }
 
     pub fn add(&mut self, states: impl IntoIterator<Item = CurveState>) {
         self.states.extend(states);
         self.states.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    }
+
+    pub fn has_branch(&self) -> bool {
+        self.has_branch
     }
 
     pub fn elastic(&self) -> f64 {
@@ -101,8 +112,11 @@ impl FactorCurve {
     }
 
     /// Where the branch after failure, from [`BENT`] to [`FALLEN`], meets the one before it when both are continued.
-    /// None where no equilibrium shows a branch after failure.
+    /// None where there is no branch after failure, or no equilibrium shows it.
     pub fn kink(&self) -> Option<Kink> {
+        if !self.has_branch {
+            return None;
+        }
         let begin = (self.reaches(BENT)?, BENT * self.elastic);
         let farthest = || {
             let mut known = self.states.iter().filter(|state| state.whole && self.growth(state) <= FALLEN);

@@ -92,7 +92,8 @@ impl FosReport {
         trials: Vec<FosTrial>,
     ) -> Self {
         let kink = curve.kink();
-        let by_kink = Finding::of("kink", curve.kinked(), kink.map(|kink| kink.factor));
+        let by = if plan.softens { "first-failure" } else { "kink" };
+        let by_kink = Finding::of(by, curve.kinked(), kink.map(|kink| kink.factor));
         let doubled = Finding::of("doubled", curve.crossing(DOUBLED), curve.reaches(DOUBLED));
         let verdict = |trial: &FosTrial| match trial.state() {
             state if state.factor == ELASTIC => Verdict::Elastic,
@@ -131,7 +132,8 @@ impl FosReport {
         let [first, second] = self.conditions.lines();
         let mut text = format!("{}\n{first}\n{second}\n\n{}", self.title, self.table());
         let [kink, doubled] = &self.criteria;
-        text += &format!("\nfactor of safety, by the kink:     {}\n", kink.words());
+        let by = if self.plan.softens { "by the first failure:" } else { "by the kink:" };
+        text += &format!("\nfactor of safety, {by:<16} {}\n", kink.words());
         text += &format!("by twice the elastic displacement: {}\n", doubled.words());
         text += self.which();
         self.notes.iter().for_each(|note| text += &format!("note: {note}\n"));
@@ -153,6 +155,9 @@ impl FosReport {
             (Some(_), _) => {
                 "use the kink, from which on displacements grow without measure; the other is a coarse check, too low \
                  where soil yields long before the body fails\n"
+            }
+            (None, _) if self.plan.softens => {
+                "use the first; the other is too low where soil yields long before the body fails\n"
             }
             (None, _) => {
                 "there is no kink: use the first, told by what the note says; the other is too low where soil yields long \
@@ -209,7 +214,7 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], plan: Search
     let coarse = curve.crossing(DOUBLED);
     if coarse.first_failed.is_none() {
         notes.push(format!("no failure up to the factor {}: a greater --to may find it", plan.to));
-    } else if kink.is_none() {
+    } else if kink.is_none() && curve.has_branch() {
         notes.push(
             "no trial beyond failure shows a branch that could be continued back to the kink; the band is that of the first \
              trial without equilibrium, or with five times the elastic displacement"

@@ -31,6 +31,9 @@ pub(super) struct SearchPlan {
     pub to: f64,
     /// The width of the bands.
     pub width: f64,
+    /// Strength falls with strain: no branch after failure is looked for.
+    #[serde(skip)]
+    pub softens: bool,
 }
 
 /// Why a search goes no further.
@@ -69,7 +72,9 @@ pub(super) fn search(plan: SearchPlan, known: &mut Known<'_>) -> Result<FactorCu
                 .to_owned(),
         ));
     }
-    let mut search = Search { plan, curve: FactorCurve::new(elastic.displacement), known };
+    let curve = FactorCurve::new(elastic.displacement);
+    let curve = if plan.softens { curve.without_branch() } else { curve };
+    let mut search = Search { plan, curve, known };
     search.climb()?;
     if search.curve.crossing(DOUBLED).last_stable.is_none() {
         return Err(over(format!(
@@ -79,7 +84,8 @@ pub(super) fn search(plan: SearchPlan, known: &mut Known<'_>) -> Result<FactorCu
         )));
     }
     search.close_in(DOUBLED, plan.width)?;
-    for (level, width) in [(BENT, plan.width), (FALLEN, COARSER * plan.width)] {
+    let levels = [(BENT, plan.width), (FALLEN, COARSER * plan.width)];
+    for (level, width) in levels.into_iter().filter(|(level, _)| *level == BENT || !plan.softens) {
         search.go_beyond(level)?;
         search.close_in(level, width)?;
     }
@@ -203,7 +209,7 @@ pub(super) mod tests {
         (curve, asked)
     }
 
-    pub const PLAN: SearchPlan = SearchPlan { from: 0.5, to: 3.0, width: 0.02 };
+    pub const PLAN: SearchPlan = SearchPlan { from: 0.5, to: 3.0, width: 0.02, softens: false };
 
     /// The displacement of a body that bends at a factor, always in equilibrium.
     pub fn hockey(kink: f64) -> impl Fn(f64) -> (f64, bool) {

@@ -2,19 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use bsmpm::model::Regime;
 use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::{Geometry, Word};
-use bsmpm_scene::{Case, Counted, MotionPath, Quantity, Rigid, RigidShape, Shares, Traction};
+use bsmpm_scene::{Case, Counted, NamedMaterial, Quantity, Rigid, RigidShape, Traction};
 use serde::Serialize;
 
+use super::refusal::{acting, followed, is_moved, ramps, refusals};
 use super::search::{ELASTIC, LEAST};
 use crate::Error;
 use crate::case::{self, parsed};
 
-/// The loosest tolerances with which a factor means anything: a study by finite elements found it 45.6 % too high with
-/// residuals of 1e-1, 2 % with 1e-2, and no difference from 1e-3 on.
-const LOOSEST: f64 = 1e-3;
 /// The key that the search sets.
 const FACTOR: &str = "strength_reduction.factor";
 /// The key that lets a trial start without stress.
@@ -30,6 +27,10 @@ const UNTIL: [&str; 2] = ["strength_reduction.steps=0", "output.checkpoint.wall=
 const SMALL: f64 = 2e-3;
 /// Stiffening by less is none.
 const UNCHANGED: f64 = 1.01;
+/// What the factor of strength that falls with strain is.
+const SOFTENS: &str = "strength falls with plastic strain: peak and residual strength are divided alike, stiffness is the \
+                       case's own, as how far the ground is strained matters; the first trial without equilibrium, or \
+                       beyond five times the elastic displacement, has failed; it depends on the cells: compare two sizes";
 /// What a trial is judged by.
 const QUANTITY: &str = "max-displacement";
 /// Its column where the case has another one of that name.
@@ -59,6 +60,9 @@ pub(super) struct Subject {
     has_rigid: [bool; 2],
     /// water flows until then; in the trials it rests, and has the pressures of that time
     holds_water: bool,
+    /// whether strength follows plastic strain, so that the stiffness of the ground matters, and no branch after
+    /// failure leads back to it
+    pub softens: bool,
     /// whether the case records it with a scale of its own, as E δ/(γ H²)
     pub is_scaled: bool,
     pub conditions: Conditions,
@@ -112,7 +116,8 @@ impl Subject {
         let case = parsed(path, &bytes, &[&set[..], &from_the_start].concat())?;
         let until = |name: &str| until(&case, name).map(|until| (name.to_owned(), until));
         let stage = stage.map(until).transpose()?;
-        let reasons = refusals(&case, stage.as_ref().map(|(_, until)| *until));
+        let until = stage.as_ref().map(|(_, until)| *until);
+        let reasons = refusals(&case, until);
         if !reasons.is_empty() {
             return Err(Error::NoFactor { path: path.to_owned(), reasons });
         }
@@ -129,7 +134,7 @@ impl Subject {
                 [("quantity", QUANTITY), ("name", &column)].map(|(key, word)| format!("history.{number}.{key}={word}")),
             );
         }
-        let (title, mut conditions) = (case.title.clone(), Conditions::of(&case));
+        let (title, mut conditions) = (case.title.clone(), Conditions::of(&case, until));
         let is_whole = stage.is_none();
         let is_grown = is_whole && ramps(&case).any(|ramp| ramp == 0.0);
         if is_grown {
@@ -152,6 +157,7 @@ impl Subject {
         }
         let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
         let has_rigid = [!case.rigid.is_empty(), case.rigid.iter().any(Rigid::is_moved) || is_moved(&case)];
+        let softens = followed(&case, until).iter().any(|named| named.material.softens());
         let holds_water = first.flow.is_some_and(|flow| flow.at_rest == Motion::Held);
         Ok(Self {
             path,
@@ -166,6 +172,7 @@ impl Subject {
             is_stressed,
             has_rigid,
             holds_water,
+            softens,
             is_scaled,
             conditions,
         })
@@ -229,12 +236,14 @@ impl Subject {
              does, and is no load"
                 .to_owned()
         });
+        let softens = self.softens.then(|| SOFTENS.to_owned());
         let held = self.holds_water.then(|| bsmpm_scene::HELD_WATER.to_owned());
         staged
             .into_iter()
             .chain(rigid)
             .chain(stopped)
             .chain(held)
+            .chain(softens)
             .chain(stiffened)
             .chain(grown)
             .chain(unstressed)
@@ -266,9 +275,10 @@ fn reduction(factor: f64, stiffness: f64) -> Vec<String> {
 
 /// What Young's moduli must be multiplied with so that the load strains no body by more than [`SMALL`], to three
 /// digits.
-fn stiffness(case: &Case) -> f64 {
-    // What consolidates does so by its own stiffness.
-    if case.flow.is_some() {
+fn stiffness(case: &Case, materials: &[NamedMaterial]) -> f64 {
+    // What consolidates does so by its own stiffness, and what softens or has been compressed fails by it.
+    let mut followed = (0..case.materials.len()).filter(|number| case.is_followed(*number));
+    if case.flow.is_some() || followed.any(|number| case.materials[number].material.softens()) {
         return 1.0;
     }
     let up = case.grid.dims() - 1;
@@ -276,7 +286,7 @@ fn stiffness(case: &Case) -> f64 {
     let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)]);
     let base = case.grid.lower()[up];
     let of_body = |body: &bsmpm_scene::Body| {
-        let material = &case.materials[body.material].material;
+        let material = &materials[body.material].material;
         let at = |y: f64| material.at(y - base).elastic().young;
         at(body.region.corners()[0][up]).min(at(body.region.corners()[1][up]))
     };
@@ -312,67 +322,6 @@ fn pressure(rigid: &Rigid, geometry: Geometry, gravity: f64) -> f64 {
     (rigid.force[0].hypot(rigid.force[1]) + rigid.mass[0] * gravity) / area
 }
 
-/// Why a case has no factor of safety, or none that could be trusted.
-fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
-    let is_plastic = case.materials.iter().any(|named| named.material.yields());
-    let hardens = case.materials.iter().any(|named| named.material.hardens());
-    let softens = case.materials.iter().any(|named| named.material.softens());
-    let has_amplitude = until.is_none() && amplitudes(case).any(|rows| !rows.is_empty());
-    let never_full = until.is_none() && ramps(case).any(|ramp| ramp > case.analysis.end);
-    let reasons = [
-        (
-            case.analysis.regime == Regime::Dynamic,
-            "analysis.type = \"dynamic\": strength reduction looks for equilibrium; it needs a quasi-static analysis",
-        ),
-        (
-            hardens,
-            "a material hardens: its strength has no limit, and the factor would be that of the displacement that is looked at; \
-             hardening = 0 gives one",
-        ),
-        (
-            softens,
-            "a material's strength follows its plastic strain: what it carries depends on how far it is strained, and trials \
-             stiffen the ground so that it hardly is; give its peak or its residual strength as \"mohr-coulomb\", which \
-             bounds the factor from both sides, of sensitive-clay cohesion and cohesion/sensitivity as \"tresca\", of \
-             cam-clay its undrained or its critical-state strength",
-        ),
-        (
-            until.is_none() && !case.stages.is_empty(),
-            "it has stages, of which each has a factor of its own: give --stage NAME, at whose end it is wanted, or \"end\"",
-        ),
-        (
-            case.stages.iter().any(|stage| stage.strength_reduction.is_some()),
-            "the case divides the strength itself, at the end of a stage or in one: leave that out, as the search does so",
-        ),
-        (!is_plastic, "no material is plastic: there is no strength to be reduced"),
-        (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),
-        (
-            has_amplitude,
-            "a load follows an amplitude: its factor would be that of whatever acts at `end`; give the load that is meant, \
-             with a ramp, or --stage NAME of a stage at whose end it rests",
-        ),
-        (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
-        (
-            until.is_none() && case.water.as_ref().is_some_and(|water| water.table.moves()),
-            "the water table moves: the factor would be that of whatever the level is as strength falls: give the level that is \
-             meant, or --stage NAME: it stays as it is at the end of that stage",
-        ),
-        (
-            until.is_none() && case.rigid.iter().any(Rigid::is_moved),
-            "a rigid body moves on a way: what it holds changes as it goes; give --stage NAME, at whose end it is held where it \
-             is then, or leave its way out",
-        ),
-        (
-            until.is_none() && is_moved(case),
-            "the case prescribes a motion: what moves as told shows no failure, however little strength is left; give the \
-             load instead of the motion, or run the case itself and read its force against the motion, or give --stage NAME, \
-             at whose end what has moved is held where it is, as a wall is",
-        ),
-    ];
-    let found = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason.to_owned());
-    loose_tolerances(case).chain(found).collect()
-}
-
 /// When the stage of a name ends.
 fn until(case: &Case, name: &str) -> Result<f64, Error> {
     case.end_of_stage(name).ok_or_else(|| {
@@ -382,47 +331,9 @@ fn until(case: &Case, name: &str) -> Result<f64, Error> {
     })
 }
 
-/// What the tractions, then the point loads are multiplied with in time.
-fn amplitudes(case: &Case) -> impl Iterator<Item = &Shares> {
-    let tractions = case.tractions.iter().map(|load| &load.amplitude);
-    let points = case.point_loads.iter().map(|load| &load.amplitude);
-    tractions.chain(points).chain(case.rigid.iter().map(|rigid| &rigid.amplitude))
-}
-
-fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {
-    let all = [("tolerance", case.solver.tolerance), ("force_tolerance", case.solver.force_tolerance)];
-    all.into_iter().filter(|(_, value)| *value > LOOSEST).map(|(key, value)| {
-        format!(
-            "solver.{key} = {value:e} is too loose for a factor that means anything: at most {LOOSEST:e} (a study by finite \
-             elements found 45.6 % too much with 1e-1, 2 % with 1e-2, nothing from 1e-3 on)"
-        )
-    })
-}
-
-fn is_moved(case: &Case) -> bool {
-    let moves = |path: &MotionPath| path.rows.iter().any(|(_, by)| *by != [0.0; 3]);
-    let footing = case.footing.iter().map(|footing| &footing.path);
-    footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path)).any(moves)
-}
-
-fn is_loaded(case: &Case) -> bool {
-    let falls = case.gravity.as_ref().is_some_and(|gravity| gravity.acceleration != [0.0; 3]);
-    let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
-    let is_pushed = case.tractions.iter().any(|traction| traction.largest() > 0.0)
-        || case.point_loads.iter().any(|load| load.force != [0.0; 3]);
-    let is_driven = case.rigid.iter().any(|rigid| rigid.force != [0.0; 3] || falls && rigid.mass[0] > 0.0);
-    (falls && weighs) || is_pushed || is_driven
-}
-
-fn ramps(case: &Case) -> impl Iterator<Item = f64> {
-    let gravity = case.gravity.iter().map(|gravity| gravity.ramp);
-    let tractions = case.tractions.iter().map(|traction| traction.ramp);
-    let driven = case.rigid.iter().filter(|rigid| rigid.force != [0.0; 3] && rigid.amplitude.is_empty());
-    gravity.chain(tractions).chain(case.point_loads.iter().map(|load| load.ramp)).chain(driven.map(|rigid| rigid.ramp))
-}
-
 impl Conditions {
-    fn of(case: &Case) -> Self {
+    fn of(case: &Case, until: Option<f64>) -> Self {
+        let materials = case.materials_at(acting(case, until));
         let mut points_per_cell: Vec<usize> = case.bodies.iter().map(|body| body.points_per_cell).collect();
         points_per_cell.dedup();
         Self {
@@ -434,8 +345,8 @@ impl Conditions {
             tolerance: case.solver.tolerance,
             force_tolerance: case.solver.force_tolerance,
             steps: (case.analysis.end / case.analysis.dt).round() as u64,
-            young: case.materials.iter().map(|named| named.material.elastic().young).collect(),
-            stiffness: stiffness(case),
+            young: followed(case, until).iter().map(|named| named.material.elastic().young).collect(),
+            stiffness: stiffness(case, &materials),
         }
     }
 

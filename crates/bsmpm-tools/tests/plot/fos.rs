@@ -271,6 +271,36 @@ fn weight_that_comes_at_once_and_soft_soil_are_mended_and_told() {
     assert_eq!(found["factor_of_safety"], as_it_is["factor_of_safety"]);
 }
 
+const CLAY: &str = "material.soil={ model = \"modified-cam-clay\", young = 1e7, poisson = 0.3, density = 2e3, \
+                    kappa = 0.02, lambda = 0.12, critical_ratio = 1.0, preconsolidation = 2e5 }";
+
+/// Only what is there when the strength falls has strength that matters; what softens has its own stiffness, and a band
+/// only.
+#[test]
+fn what_is_not_there_does_not_matter_and_what_softens_has_a_band() {
+    let of = |set: &[&str], further: &[&str]| {
+        let bench = Bench::new(SLOPE, "kink=1.373");
+        let set = set.iter().flat_map(|set| ["--set", *set]);
+        let output = bench.fos(&set.chain(further.iter().copied()).collect::<Vec<_>>());
+        assert!(output.status.success(), "{output:?}");
+        bench.found()
+    };
+    let softening = |young: f64, last: f64| {
+        format!(
+            "{{ model = \"mohr-coulomb-softening\", young = {young:e}, poisson = 0.3, density = 2e3, friction = 30, \
+             cohesion = 1e4, residual_friction = {last}, residual_cohesion = 0, softening_strain = 0.1 }}"
+        )
+    };
+    let spare = of(&[&format!("material.spare={}", softening(1e7, 20.0))], &[]);
+    assert_eq!(spare["conditions"]["young"].as_array().unwrap().len(), 1, "{spare}");
+    assert!(!spare["factor_of_safety"]["estimate"].is_null());
+    let soil = of(&[&format!("material.soil={}", softening(1e7, 20.0))], &[]);
+    let found = &soil["factor_of_safety"];
+    assert!(soil["conditions"]["stiffness"] == 1.0 && found["estimate"].is_null(), "{soil}");
+    assert!(found["last_stable"].as_f64() < Some(1.42) && found["first_failed"].as_f64() > Some(1.41), "{soil}");
+    assert!(soil["notes"].to_string().contains("compare two sizes"), "{soil}");
+}
+
 #[test]
 fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
     let bench = Bench::new(SLOPE, "kink=1.373");
@@ -286,11 +316,13 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
         ),
         (
             vec![
-                "material.soil={ model = \"mohr-coulomb-softening\", young = 1e8, poisson = 0.3, density = 2e3, \
-                  friction = 30, cohesion = 1e4, residual_friction = 20, residual_cohesion = 0, softening_strain = 0.1 }",
+                "analysis.type=quasi-static-in-time",
+                "material.soil={ model = \"sensitive-clay\", young = 1e8, poisson = 0.49, density = 2e3, cohesion = 5e4, \
+                  sensitivity = 4, softening_strain = 10, rate_parameter = 0.1, reference_rate = 1e-4 }",
             ],
-            "give its peak or its residual strength",
+            "trials have no time: leave rate_parameter",
         ),
+        (vec!["initial.k0=0.5", "gravity.ramp=0.0", CLAY], "give cam-clay's undrained strength"),
         (vec!["stage=[{ at = 0.5, reset_displacements = true }]"], "it has stages, of which each has a factor"),
         (vec!["gravity.acceleration=[0.0, 0.0]"], "nothing loads the body"),
         (vec!["gravity.ramp=2.0"], "grows beyond `end`"),

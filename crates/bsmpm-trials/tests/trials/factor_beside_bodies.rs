@@ -52,7 +52,7 @@ fn band(found: &Value) -> [f64; 2] {
     ["last_stable", "first_failed"].map(|key| found["factor_of_safety"][key].as_f64().unwrap())
 }
 
-/// mu/tan(theta) = 1.5, as friction is divided as tan(phi) is; the soil alone has more.
+/// mu/tan(theta) = 1.5, as friction is divided as tan(phi) is; the soil alone has more, and an elastic one no other.
 #[test]
 fn a_block_on_rock_has_the_factor_of_its_friction_inclined_to_the_cells_or_not() {
     let inclined = [
@@ -62,11 +62,64 @@ fn a_block_on_rock_has_the_factor_of_its_friction_inclined_to_the_cells_or_not()
         "body=[{ material = \"soil\", polygon = [[0.5, 1.75], [1.3, 1.35], [1.5, 1.75], [0.7, 2.15]], points_per_cell = 4 }]",
         "rigid.0.polygon=[[-0.5, 2.25], [-0.5, -0.5], [4.5, -0.5], [4.5, -0.25]]",
     ];
-    for set in [&[][..], &inclined] {
+    let elastic = [
+        "material.soil={ model = \"hencky\", young = 1e7, poisson = 0.3, density = 2e3 }",
+        "rigid=[]",
+        "grid.lower=[0, 0]",
+        "boundary.bottom={ friction = 0.75 }",
+    ];
+    for set in [&[][..], &inclined, &elastic] {
         let [stands, fails] = band(&found(BLOCK, ((1.2, 1.8), None), set));
         println!("{stands} to {fails}");
         assert!(stands <= 1.5 && 1.5 <= fails && fails - stands < 0.0201, "{set:?}: {stands} {fails}");
     }
+}
+
+/// A layer of clay, 2 m thick, on an incline of 20 degrees, whose strength at its base falls to a third.
+const LAYER: &str = r#"
+    geometry = "plane-strain"
+    analysis = { type = "quasi-static", steps = 10 }
+    gravity  = { acceleration = [3.3552176056, -9.2183847172], ramp = 1.0 }
+    boundary = { bottom = "fixed" }
+    grid     = { lower = [-1.0, 0.0], upper = [21.0, 2.5], cell = 0.5, order = "quadratic" }
+    body     = [{ material = "clay", box = { lower = [0, 0], upper = [20, 2] }, points_per_cell = 3 }]
+    stabilisation = { method = "f-bar" }
+    [material.clay]
+    model       = "sensitive-clay"
+    young       = "10 MPa"
+    poisson     = 0.45
+    cohesion    = "18 kPa"
+    sensitivity = 3.0
+    softening_strain = 5.0
+    unit_weight = "20 kN/m3"
+"#;
+
+/// It slides as a whole, once the base is at its peak: c/(gamma H sin(20)) = 1.316, in these cells 1.354 as tresca.
+/// Where a stage has exchanged Cam-clay for a strength, the factor is that of the latter.
+#[test]
+fn a_layer_of_sensitive_clay_has_the_factor_of_its_peak_and_exchanged_clay_that_of_what_is_there() {
+    let [stands, fails] = band(&found(LAYER, ((1.3, 1.4), None), &[]));
+    println!("{stands} to {fails}");
+    assert!(stands >= 1.33 && fails <= 1.3751, "{stands} {fails}");
+    let slope = [
+        "analysis={ type = \"quasi-static\", end = 2, steps = 10 }",
+        "gravity={ acceleration = [0, -9.81], ramp = 1.0 }",
+        "boundary={ bottom = \"fixed\", left = \"roller\", right = \"roller\" }",
+        "body.0={ material = \"clay\", polygon = [[-1, 0], [21, 0], [21, 0.5], [10, 0.5], [8, 2], [-1, 2]], points_per_cell = 3 }",
+    ];
+    let tresca = "= { model = \"tresca\", young = 1e7, poisson = 0.3, cohesion = 8e3, density = 1800 }";
+    let exchanged = [
+        "material.clay={ model = \"modified-cam-clay\", young = 5e6, poisson = 0.3, kappa = 0.02, lambda = 0.12, \
+         critical_ratio = 1.0, ocr = 1.5, density = 1800 }",
+        &format!("material.strength{tresca}"),
+        "stage=[{ name = \"fails\", at = 1, materials = [{ from = \"clay\", to = \"strength\" }] }]",
+        "gravity.ramp=0.0",
+        "initial.k0=0.6",
+    ];
+    let of = |stage, set: &[&str]| estimate(&found(LAYER, ((1.0, 4.0), stage), &[&slope, set].concat()));
+    let [clay, strength] = [of(Some("fails"), &exchanged), of(None, &[&format!("material.clay{tresca}")])];
+    println!("{clay} of what was Cam-clay, {strength} of what never was");
+    assert!((clay / strength - 1.0).abs() < 0.03, "{clay} {strength}");
 }
 
 /// 1.584 and 1.584 as the toe is held; .969 as it is not. A wall that goes 10 mm away in a stage and is to go on leaves
