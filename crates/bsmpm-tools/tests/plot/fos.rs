@@ -9,6 +9,7 @@ use std::io::Write;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::time::Duration;
 
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
 use bsmpm_io::frame::{Field, Frame};
@@ -26,7 +27,7 @@ const SLOPE: &str = include_str!("../../../../cases/short/slope_stability.toml")
 const SCALED: &str = "E_delta_over_gamma_H2";
 
 /// What the body of a stub does, as `KEY=NUMBER ...`: it bends at the factor `kink`, ends early from `stops` to `until`
-/// with `code`.
+/// with `code`, and has no end above `lasts`.
 fn behaviour(folder: &Path, key: &str, otherwise: f64) -> f64 {
     let text = fs::read_to_string(folder.join("behaviour")).unwrap();
     let value = text.split_whitespace().find_map(|word| word.strip_prefix(key)?.strip_prefix('='));
@@ -50,6 +51,11 @@ fn stub() {
     if factor > behaviour(&folder, "breaks", f64::INFINITY) {
         eprintln!("it broke");
         std::process::exit(70);
+    }
+    if factor > behaviour(&folder, "lasts", f64::INFINITY) {
+        let mut pids = OpenOptions::new().create(true).append(true).open(folder.join("pids")).unwrap();
+        pids.write_all(format!("{}\n", std::process::id()).as_bytes()).unwrap();
+        std::thread::sleep(Duration::from_secs(600));
     }
     let growth = 1.0 + 0.05 * factor + 100.0 * (factor - behaviour(&folder, "kink", f64::INFINITY)).max(0.0);
     let stops = behaviour(&folder, "stops", f64::INFINITY);
@@ -136,9 +142,14 @@ impl Bench {
     }
 
     fn fos_with(&self, jobs: &str, options: &[&str]) -> Output {
+        self.command(jobs, options).output().unwrap()
+    }
+
+    fn command(&self, jobs: &str, options: &[&str]) -> Command {
         let arguments = [&["fos", "slope.toml", "--jobs", jobs], options, &["--", "./solver"]].concat();
         let mut command = Command::new(env!("CARGO_BIN_EXE_bsmpm"));
-        command.current_dir(self.folder.path()).env(STUB, self.folder.path()).args(arguments).output().unwrap()
+        command.current_dir(self.folder.path()).env(STUB, self.folder.path()).args(arguments);
+        command
     }
 
     fn calls(&self) -> usize {

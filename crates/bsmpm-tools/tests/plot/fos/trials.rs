@@ -1,7 +1,11 @@
 //! Which trials are made, and that no more than the clock tells how many at a time.
 
 use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::thread;
+use std::time::Duration;
 
+use rustix::process::{Pid, Signal, kill_process, test_kill_process};
 use serde_json::Value;
 
 use super::{Bench, SLOPE, text};
@@ -49,6 +53,23 @@ fn the_number_of_jobs_changes_the_clock_and_nothing_else() {
         let before = bench.calls();
         assert!(bench.fos_with("4", &[]).status.success());
         assert_eq!(bench.calls(), before);
+    }
+}
+
+#[test]
+fn a_search_that_is_told_to_end_takes_its_runs_along() {
+    let bench = Bench::new(SLOPE, "kink=1.373 lasts=0.1");
+    let mut search = bench.command("2", &[]).spawn().unwrap();
+    let pids = || fs::read_to_string(bench.path("pids")).unwrap_or_default();
+    while pids().lines().count() < 2 || !pids().ends_with('\n') {
+        assert!(search.try_wait().unwrap().is_none(), "it ended by itself");
+        thread::sleep(Duration::from_millis(10));
+    }
+    kill_process(Pid::from_child(&search), Signal::TERM).unwrap();
+    assert_eq!(search.wait().unwrap().signal(), Some(Signal::TERM.as_raw()));
+    for pid in pids().lines() {
+        let pid = Pid::from_raw(pid.parse().unwrap()).unwrap();
+        assert!(test_kill_process(pid).is_err(), "{pid:?} goes on");
     }
 }
 
