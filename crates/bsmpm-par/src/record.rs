@@ -20,7 +20,7 @@ use bsmpm_scene::model::vector;
 use bsmpm_scene::surfaces::{self, DrainPlace, Gauge};
 use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{Case, Counted, GridSpec, History, Quantity, Stage};
-use place::{at_followed, at_surface, both, displacement, followed_place, pore, section};
+use place::{PoreAt, at_followed, at_surface, both, displacement, followed_place, pore, section};
 use reported::{at_face, contact, rigid};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
@@ -186,10 +186,13 @@ impl<const D: usize> Recorder<D> {
                 | Quantity::FrictionPower { face } => {
                     contact(history.quantity.measurement(), at_face(model, *face, report), report.dt)
                 }
-                Quantity::PorePressure { .. } | Quantity::Pore { .. } => {
-                    let id = self.followed[number].unwrap_or(u64::MAX);
+                Quantity::PorePressure { at, surface } | Quantity::Pore { at, surface, .. } => {
+                    let read = match surface {
+                        true => PoreAt::Surface(vector::<D, _>(*at) - self.lower),
+                        false => PoreAt::Point(self.followed[number].unwrap_or(u64::MAX)),
+                    };
                     let water = PoreWater::of(model, points, t);
-                    pore::<K, D>((history.quantity.measurement(), water), id, (&model.grid, points), halo)?
+                    pore((history.quantity.measurement(), water), read, (model, points), halo)?
                 }
                 Quantity::PorePressures { .. } => {
                     let water = PoreWater::of(model, points, t);

@@ -18,8 +18,9 @@ use bsmpm_scene::words::Measurement;
 /// The place of a history that follows the point nearest to it.
 pub(super) fn followed_place(quantity: &Quantity) -> Option<[f64; 3]> {
     match *quantity {
-        Quantity::Displacement { at } | Quantity::PorePressure { at } | Quantity::Pore { at, .. } => Some(at),
+        Quantity::Displacement { at } => Some(at),
         Quantity::Velocity { at, surface: false } | Quantity::Stress { at, surface: false } => Some(at),
+        Quantity::PorePressure { at, surface: false } | Quantity::Pore { at, surface: false, .. } => Some(at),
         _ => None,
     }
 }
@@ -63,21 +64,37 @@ pub(super) fn at_surface<K: Kinematics<D>, const D: usize, const C: usize>(
     found[0].map_or_else(|| vec![0.0; C], |values| values.to_vec())
 }
 
-/// A quantity of the pore water of the point of an id; zero without it.
+/// Where pore water is read.
+#[derive(Clone, Copy)]
+pub(super) enum PoreAt<const D: usize> {
+    /// The point of an id.
+    Point(u64),
+    /// m  the material place that was there, from the grid's lower corner, before anything moved
+    Surface(Vector<D>),
+}
+
+/// A quantity of the pore water of a point or place; zero without it.
 pub(super) fn pore<K: Kinematics<D>, const D: usize>(
     (measured, water): (Measurement, Option<PoreWater<'_, D>>),
-    id: u64,
-    (grid, points): (&Grid<D>, &Points<D>),
+    read: PoreAt<D>,
+    (model, points): (&Model<K, D>, &Points<D>),
     halo: &dyn Halo,
 ) -> Result<Vec<f64>, StepError> {
     let number = |of: &dyn Fn(PoreWater<'_, D>, usize) -> f64| {
-        observe::at_point(points, id, halo, |p| [water.map_or(0.0, |water| of(water, p))]).to_vec()
+        let field = |p: usize| [water.map_or(0.0, |water| of(water, p))];
+        match read {
+            PoreAt::Point(id) => observe::at_point(points, id, halo, field).to_vec(),
+            PoreAt::Surface(at) => at_surface((model, points), at, field, halo),
+        }
     };
     Ok(match measured {
         Measurement::Flux => {
-            let fluxes = water.map(|water| water.fluxes::<K>(grid, halo)).transpose()?;
+            let fluxes = water.map(|water| water.fluxes::<K>(&model.grid, halo)).transpose()?;
             let flux = |p: usize| fluxes.as_ref().map_or([0.0; D], |fluxes| fluxes[p].into());
-            observe::at_point(points, id, halo, flux).to_vec()
+            match read {
+                PoreAt::Point(id) => observe::at_point(points, id, halo, flux).to_vec(),
+                PoreAt::Surface(at) => at_surface((model, points), at, flux, halo),
+            }
         }
         Measurement::ExcessPressure => number(&|water, p| water.excess(p)),
         Measurement::Porosity => number(&|water, p| water.porosity(p)),

@@ -120,6 +120,8 @@ pub enum Quantity {
     PorePressure {
         /// m  in the case's coordinates
         at: [f64; 3],
+        /// of the place itself instead, by a plane through the points around it
+        surface: bool,
     },
     /// Pa  of the water in the pores of all points that count, positive in compression: mean, least, largest
     PorePressures {
@@ -132,6 +134,8 @@ pub enum Quantity {
         what: Measurement,
         /// m  in the case's coordinates
         at: [f64; 3],
+        /// of the place itself instead, by a plane through the points around it
+        surface: bool,
     },
     /// m3/m  water that has left the ground, per metre of thickness
     WaterOutflow {

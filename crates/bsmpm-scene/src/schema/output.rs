@@ -112,8 +112,8 @@ pub(super) static HISTORY: Table = Table {
             "surface",
             Flag,
             Optional,
-            "of velocity and stress: of the place itself, by the plane through the points around it, also where these are on \
-             one side; of the nearest point unless given",
+            "of velocity, stress and what the water of a place has: of the place itself, by the plane through the points \
+             around it, also where these are on one side; of the nearest point unless given",
         ),
         key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
     ],

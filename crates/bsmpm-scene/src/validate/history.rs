@@ -177,9 +177,9 @@ fn own_keys(measured: Measurement, geometry: Option<Geometry>) -> (&'static [&'s
         Moment | Work => (&[], &["of"]),
         RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => (&[], &["rigid"]),
         RigidSlip | RigidGap | RigidWork => (&[], &["rigid"]),
-        Displacement | PorePressure | ExcessPressure | Porosity | Flux => (&[], &["at"]),
+        Displacement => (&[], &["at"]),
         WaterOutflow => (&["drain", "face"], &[]),
-        Velocity | Stress => (&["surface"], &["at"]),
+        Velocity | Stress | PorePressure | ExcessPressure | Porosity | Flux => (&["surface"], &["at"]),
         SectionForces if geometry == Some(Geometry::Solid) => (&["fixed", "rectangle", "disc"], &[]),
         SectionForces => (&["fixed"], &["from", "to"]),
         PressureNoise => (&["box"], &[]),
@@ -223,10 +223,12 @@ fn quantity(
         Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
         Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)?, surface: at_surface(record)? },
         Measurement::Stress => Quantity::Stress { at: at(record, grid, report)?, surface: at_surface(record)? },
-        Measurement::PorePressure => Quantity::PorePressure { at: at(record, grid, report)? },
+        Measurement::PorePressure => {
+            Quantity::PorePressure { at: at(record, grid, report)?, surface: at_surface(record)? }
+        }
         Measurement::PorePressures => Quantity::PorePressures { of: counted(record, made, report)? },
         Measurement::ExcessPressure | Measurement::Porosity | Measurement::Flux => {
-            Quantity::Pore { what: measured, at: at(record, grid, report)? }
+            Quantity::Pore { what: measured, at: at(record, grid, report)?, surface: at_surface(record)? }
         }
         Measurement::WaterOutflow => Quantity::WaterOutflow { drain: flow::drain_of(record, root, report)? },
         Measurement::WaterBalance => Quantity::WaterBalance,

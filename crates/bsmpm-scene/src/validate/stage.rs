@@ -342,7 +342,7 @@ fn follow(case: &mut Case, lasting: &[Body]) {
     for (number, history) in case.histories.iter_mut().enumerate() {
         match history.quantity {
             Quantity::Displacement { at }
-            | Quantity::PorePressure { at }
+            | Quantity::PorePressure { at, .. }
             | Quantity::Pore { at, .. }
             | Quantity::Velocity { at, .. }
             | Quantity::Stress { at, .. } => {

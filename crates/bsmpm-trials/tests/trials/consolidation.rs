@@ -52,6 +52,15 @@ at = [0.2, 1.0]
 quantity = "excess-pressure"
 at = [0.2, 0.0]
 [[history]]
+quantity = "excess-pressure"
+name = "at-drain"
+at = [0.2, 1.0]
+surface = true
+[[history]]
+quantity = "flux"
+at = [0.2, 1.0]
+surface = true
+[[history]]
 quantity = "water-outflow"
 drain = "top"
 [[history]]
@@ -79,6 +88,12 @@ fn terzaghis_column_by_a_face_and_by_a_surface_within_a_cell() {
             let of = |column: &str| at(&table, column, time * 1e6);
             let errors = [-of("displacement-y") / FINAL - consolidated, of("excess-pressure") / LOAD - pressure];
             assert!(errors.iter().all(|error| error.abs() < 0.01), "{time}: {errors:?}");
+            // The point nearest to the top has 1 % of the load more. The flux is the rate of the settlement.
+            let terms = (0..20).map(|k| (f64::from(2 * k + 1) * std::f64::consts::FRAC_PI_2).powi(2));
+            let rate = 2e-6 * FINAL * terms.map(|square| (-square * time).exp()).sum::<f64>();
+            let (drained, flux) = (of("at-drain") / LOAD, of("flux-y") / rate - 1.0);
+            println!("T = {time}: {drained:e} of the load at the drain, flux {flux:+e}");
+            assert!(drained.abs() < 1e-3 && flux.abs() < 0.02, "{time}: {drained} {flux}");
             assert!(of("water-balance").abs() < 1e-4, "{time}: {}", of("water-balance"));
         }
     }

@@ -44,9 +44,8 @@ fn adjointness<K: Kinematics<D>, const D: usize>(order: usize) -> (f64, f64) {
     let mut random = Random::new(11);
     let u = random.array(grid.nodes() * D);
     let P: Vec<K::Gradient> = (0..n).map(|_| K::Gradient::from_fn(|_, _| random.signed())).collect();
-    let at_points: Vec<f64> =
-        transfer::gradients::<K, D, _>((&shape, &scene.points.x), &u, |_, gradient| elements::<K, D>(&gradient))
-            .concat();
+    let gradients = transfer::gradients::<K, D, _>((&shape, &scene.points.x), &u, |_, gradient| gradient);
+    let at_points: Vec<f64> = gradients.iter().flat_map(elements::<K, D>).collect();
     let flat: Vec<f64> = P.iter().flat_map(elements::<K, D>).collect();
     let f = transfer::divergence::<K, D>((&shape, &scene.points.x), |p| P[p]).alone();
     let ((gathered, scale), (scattered, _)) = (dot(&at_points, &flat), dot(&u, &f));

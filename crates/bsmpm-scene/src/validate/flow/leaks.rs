@@ -55,7 +55,7 @@ fn at_surfaces(case: &Case, report: &mut Report<'_>) {
     let is_bare =
         |place: [f64; 3]| is_beyond(grid, place).is_none() && !case.bodies.iter().any(|body| is_in(body, grid, place));
     for history in &case.histories {
-        let Quantity::Pore { what: Measurement::Flux, at } = history.quantity else { continue };
+        let Quantity::Pore { what: Measurement::Flux, at, .. } = history.quantity else { continue };
         let around = (0..27).map(|n| [n / 9, n / 3 % 3, n % 3].map(|k| f64::from(k) - 1.0));
         let mut places = around.map(|off| std::array::from_fn(|axis| at[axis] + cell * off[axis]));
         if places.any(is_bare) {
