@@ -95,10 +95,11 @@ const LAYER: &str = r#"
 "#;
 
 /// It slides as a whole, once the base is at its peak: c/(gamma H sin(20)) = 1.316, in these cells 1.354 as tresca.
-/// Where a stage has exchanged Cam-clay for a strength, the factor is that of the latter.
+/// Where a stage has exchanged Cam-clay for a strength, the factor is that of the latter, if the clay was stiff: ten
+/// times as soft, it has sunk before, and what is left of the slope has 1.883 for 1.824.
 #[test]
 fn a_layer_of_sensitive_clay_has_the_factor_of_its_peak_and_exchanged_clay_that_of_what_is_there() {
-    let [stands, fails] = band(&found(LAYER, ((1.3, 1.4), None), &[]));
+    let [stands, fails] = band(&found(LAYER, ((1.0, 1.5), None), &[]));
     println!("{stands} to {fails}");
     assert!(stands >= 1.33 && fails <= 1.3751, "{stands} {fails}");
     let slope = [
@@ -109,7 +110,7 @@ fn a_layer_of_sensitive_clay_has_the_factor_of_its_peak_and_exchanged_clay_that_
     ];
     let tresca = "= { model = \"tresca\", young = 1e7, poisson = 0.3, cohesion = 8e3, density = 1800 }";
     let exchanged = [
-        "material.clay={ model = \"modified-cam-clay\", young = 5e6, poisson = 0.3, kappa = 0.02, lambda = 0.12, \
+        "material.clay={ model = \"modified-cam-clay\", young = 5e6, poisson = 0.3, kappa = 0.002, lambda = 0.012, \
          critical_ratio = 1.0, ocr = 1.5, density = 1800 }",
         &format!("material.strength{tresca}"),
         "stage=[{ name = \"fails\", at = 1, materials = [{ from = \"clay\", to = \"strength\" }] }]",

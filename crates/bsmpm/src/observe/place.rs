@@ -32,7 +32,8 @@ pub enum Configuration {
 ///
 /// Weights are the quadratic B-spline that reaches one and a half cells of the place's own cell to each side, times the
 /// points' reference volumes. A place is in material if a point is nearer than its size, the D-th root of what it has
-/// of the grid: half of that is where its material ends.
+/// of the grid: half of that is where its material ends. Before anything moved it may be twice as far away: a corner of
+/// a point that is 15 times as long as thick, as where a body ends in a cell.
 pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
@@ -102,12 +103,12 @@ impl<const D: usize> Fit<'_, D> {
     fn materials(&self, halo: &dyn Halo) -> Vec<Option<u16>> {
         let distance = |number: usize, p: usize| -> Option<f64> {
             let apart = (self.place_of(p) - self.places[number]).norm_squared();
-            let volume = match self.configuration {
-                Configuration::Initial => self.points.volume[p],
-                Configuration::Present => self.points.volume[p] * self.points.F.at(p).determinant(),
+            let (volume, sizes) = match self.configuration {
+                Configuration::Initial => (self.points.volume[p], 2.0_f64),
+                Configuration::Present => (self.points.volume[p] * self.points.F.at(p).determinant(), 1.0),
             };
             let size = volume / (self.weight)(&self.place_of(p));
-            let within = apart <= size.powf(2.0 / D as f64);
+            let within = apart <= sizes.powi(2) * size.powf(2.0 / D as f64);
             self.terms(number, p).and_then(|_| within.then_some(apart))
         };
         let mut nearest = vec![(f64::INFINITY, u64::MAX, 0_u16); self.places.len()];
