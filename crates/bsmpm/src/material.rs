@@ -90,7 +90,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Whether its strength grows with plastic strain, without a limit.
+            /// Whether some part of its strength grows with plastic strain.
             pub fn hardens(&self) -> bool {
                 match self {
                     $(Self::$Law(law) => law.hardens(),)*

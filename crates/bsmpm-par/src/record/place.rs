@@ -60,7 +60,7 @@ pub(super) fn at_surface<K: Kinematics<D>, const D: usize, const C: usize>(
     field: impl Fn(usize) -> [f64; C],
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let found = place::values::<K, D, _>(&model.grid, points, (&[at], Configuration::Initial), field, halo);
+    let found = place::values::<K, D, _>(&model.grid, points, (&[at], Configuration::Surface), field, halo);
     found[0].map_or_else(|| vec![0.0; C], |values| values.to_vec())
 }
 

@@ -25,6 +25,7 @@ use bsmpm::nodal::Nodal;
 use factor::Factor;
 use plan::Plan;
 use reduction::TreeReduction;
+use std::sync::Mutex;
 use tree::{Desk, Elimination, Slate, Triangles};
 
 /// A factorisation of one rank's share of the matrix. Its memory is kept when the unknowns change, as they do in most
@@ -34,7 +35,7 @@ pub struct Dissection {
     plan: Plan,
     factor: Factor, // part after part
     reduction: TreeReduction,
-    desk: Desk,
+    desks: Vec<Mutex<Desk>>, // of every thread
     slate: Slate,
     work: Vec<f64>, // a vector by elimination numbers
     scale: f64,     // a power of two that the matrix is multiplied with
@@ -87,9 +88,10 @@ impl Dissection {
     ) -> bool {
         let unit = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
         self.scale = if unit.is_normal() { 1.0 / unit } else { 1.0 };
-        let Self { plan, factor, reduction, desk, scale, .. } = self;
+        let Self { plan, factor, reduction, desks, scale, .. } = self;
         let room = factor.restart(precision, plan.entries());
-        let (rest, good) = Elimination { plan, stencil, scale: *scale }.run(room, desk);
+        desks.resize_with(rayon::current_num_threads(), Mutex::default);
+        let (rest, good) = Elimination { plan, stencil, scale: *scale, desks }.run(room);
         reduction.factorise(link, precision, rest) && good
     }
 

@@ -22,8 +22,8 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (
             any(Material::hardens),
-            "a material hardens: its strength has no limit, and the factor would be that of the displacement that is looked at; \
-             hardening = 0 gives one",
+            "a material hardens: its strength grows as it is strained, and the factor would be that of the displacement that is \
+             looked at; hardening = 0, or no residual strength above the first one, gives one",
         ),
         (
             any(|material| !material.is_linear()),

@@ -64,15 +64,17 @@ impl UnderWay {
         Ok(begun)
     }
 
-    /// Takes one out that has ended, while its number is that of no other process. What it left is nobody's business
-    /// once this program ends.
-    fn end(&self, process: Pid) {
+    /// Takes one out that has ended, while its number is that of no other process, and fetches what it left, which is
+    /// nobody's business once this program ends.
+    fn end<T>(&self, process: Pid, fetch: impl FnOnce() -> T) -> T {
         let mut state = self.state();
+        let left = fetch();
         state.processes.retain(|other| *other != process);
         self.ended.notify_all();
         while state.ends {
             state = self.ended.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
+        left
     }
 
     /// From now on a first TERM stops the processes and ends this program behind them; a second one ends it at once.
@@ -140,8 +142,7 @@ impl Stop {
         let ended = || waitid(WaitId::Pid(process), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
         while ended().is_err_and(|error| error == Errno::INTR) {}
         self.state().process = None;
-        UNDER_WAY.end(process);
-        child.wait()
+        UNDER_WAY.end(process, || child.wait())
     }
 
     fn state(&self) -> MutexGuard<'_, StopState> {

@@ -334,6 +334,13 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
             "trials have no time: leave rate_parameter",
         ),
         (vec!["initial.k0=0.5", "gravity.ramp=0.0", CLAY], "give cam-clay's undrained strength"),
+        (
+            vec![
+                "material.soil={ model = \"mohr-coulomb-softening\", young = 1e8, poisson = 0.3, density = 2e3, cohesion = 1e4, \
+                  friction = 25, residual_friction = 35, softening_strain = 0.1 }",
+            ],
+            "a material hardens",
+        ),
         (vec!["stage=[{ at = 0.5, reset_displacements = true }]"], "it has stages, of which each has a factor"),
         (vec!["gravity.acceleration=[0.0, 0.0]"], "nothing loads the body"),
         (vec!["gravity.ramp=2.0"], "grows beyond `end`"),

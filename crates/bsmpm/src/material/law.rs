@@ -132,7 +132,7 @@ pub trait Law {
         0.0
     }
 
-    /// Whether its strength grows with plastic strain, without a limit.
+    /// Whether some part of its strength grows with plastic strain.
     fn hardens(&self) -> bool {
         false
     }

@@ -294,6 +294,10 @@ impl Law for SofteningMohrCoulomb {
         Self { rate: self.rate, dt: self.dt, ..Self::new(self.elastic, peak, residual, self.strain, self.decay) }
     }
 
+    fn hardens(&self) -> bool {
+        self.residual.0 > self.peak.0 || self.residual.2 > self.peak.2
+    }
+
     fn softens(&self) -> bool {
         self.change != [0.0; 3] || self.rate.is_some()
     }

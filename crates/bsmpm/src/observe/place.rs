@@ -18,11 +18,16 @@ const PRODUCTS: usize = TERMS * TERMS;
 /// Determinant of the moments, relative to points spread over cells, below which they span no plane.
 const SINGULAR: f64 = 1e-6;
 
+/// Sizes of a point that a surface may lie away from it.
+const CORNER: f64 = 2.0;
+
 /// Which places of points are compared with the places that are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Configuration {
     /// Where points were before anything moved, or where a stage placed them: the places belong to the material.
     Initial,
+    /// The same of places that are told to be in material or at its surface.
+    Surface,
     /// Where points are.
     Present,
 }
@@ -32,8 +37,8 @@ pub enum Configuration {
 ///
 /// Weights are the quadratic B-spline that reaches one and a half cells of the place's own cell to each side, times the
 /// points' reference volumes. A place is in material if a point is nearer than its size, the D-th root of what it has
-/// of the grid: half of that is where its material ends. Before anything moved it may be twice as far away: a corner of
-/// a point that is 15 times as long as thick, as where a body ends in a cell.
+/// of the grid: half of that is where its material ends. At a surface it may be twice as far away: the corner of what a
+/// point has may be that, in a plane, where it is 15 times as long as thick, as where a body ends in a cell.
 pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
@@ -80,7 +85,7 @@ struct Fit<'a, const D: usize> {
 impl<const D: usize> Fit<'_, D> {
     fn place_of(&self, p: usize) -> Vector<D> {
         match self.configuration {
-            Configuration::Initial => self.points.x[p] - self.points.u[p],
+            Configuration::Initial | Configuration::Surface => self.points.x[p] - self.points.u[p],
             Configuration::Present => self.points.x[p],
         }
     }
@@ -104,11 +109,12 @@ impl<const D: usize> Fit<'_, D> {
         let distance = |number: usize, p: usize| -> Option<f64> {
             let apart = (self.place_of(p) - self.places[number]).norm_squared();
             let (volume, sizes) = match self.configuration {
-                Configuration::Initial => (self.points.volume[p], 2.0_f64),
+                Configuration::Initial => (self.points.volume[p], 1.0),
+                Configuration::Surface => (self.points.volume[p], CORNER),
                 Configuration::Present => (self.points.volume[p] * self.points.F.at(p).determinant(), 1.0),
             };
             let size = volume / (self.weight)(&self.place_of(p));
-            let within = apart <= sizes.powi(2) * size.powf(2.0 / D as f64);
+            let within = apart <= sizes * sizes * size.powf(2.0 / D as f64);
             self.terms(number, p).and_then(|_| within.then_some(apart))
         };
         let mut nearest = vec![(f64::INFINITY, u64::MAX, 0_u16); self.places.len()];

@@ -7,6 +7,7 @@ use super::plan::{NONE, Plan, Supernode};
 use super::reduction::{add_packed, pack};
 use crate::stencil::Stencil;
 use std::ops::Range;
+use std::sync::Mutex;
 
 /// Numbers of a subtree's factor from which on its halves are worth two threads: 2^14 and 2^16 take as long.
 pub(super) const WORTH: usize = 1 << 15;
@@ -19,26 +20,27 @@ fn is_worth(plan: &Plan, root: usize) -> bool {
 /// The first child of a part, and the last one if there are two.
 fn halves(plan: &Plan, root: usize) -> (usize, Option<usize>) {
     let mut children = plan.children(root);
-    let last = children.next().unwrap_or(root);
+    let last = children.next().expect("what is worth a cut has children");
     children.next().map_or((last, None), |first| (first, Some(last)))
 }
 
 /// What one thread works with.
 #[derive(Default)]
 pub struct Desk {
-    columns: Vec<f64>,     // of the front in work
-    matrix: Vec<f64>,      // what it leaves
-    places: Vec<usize>,    // in its front by elimination number
-    packed: Vec<Vec<f64>>, // what parts leave that has not been taken
-    good: bool,            // whether all pivots were positive
+    columns: Vec<f64>,  // of the front in work
+    matrix: Vec<f64>,   // what it leaves
+    places: Vec<usize>, // in its front by elimination number
 }
 
-impl Desk {
-    /// An empty one for a plan.
-    fn clear(&mut self, plan: &Plan) {
-        self.places.resize(plan.order.len(), 0);
-        self.packed.clear();
-        self.good = true;
+/// What parts leave that has not been taken, packed, and whether all pivots so far were positive.
+struct Left {
+    packed: Vec<Vec<f64>>,
+    good: bool,
+}
+
+impl Left {
+    fn nothing() -> Self {
+        Self { packed: Vec::new(), good: true }
     }
 }
 
@@ -47,45 +49,49 @@ pub struct Elimination<'a, const D: usize, const C: usize> {
     pub plan: &'a Plan,
     pub stencil: &'a Stencil<D, C>,
     pub scale: f64,
+    /// one for every thread
+    pub desks: &'a [Mutex<Desk>],
 }
 
 impl<const D: usize, const C: usize> Elimination<'_, D, C> {
     /// Eliminates all parts into `room`. What is left of the last one's front, packed, and whether all pivots were
     /// positive and finite.
-    pub fn run(&self, room: Room<'_>, desk: &mut Desk) -> (Vec<f64>, bool) {
-        desk.clear(self.plan);
-        self.subtree(self.plan.parts.len() - 1, room, desk);
-        (desk.packed.pop().expect("a plan has a last part"), desk.good)
+    pub fn run(&self, room: Room<'_>) -> (Vec<f64>, bool) {
+        let mut left = Left::nothing();
+        self.subtree(self.plan.parts.len() - 1, room, &mut left);
+        (left.packed.pop().expect("a plan has a last part"), left.good)
     }
 
-    /// Eliminates a part and all below it, whose columns `room` begins with; what it leaves comes last on the desk.
-    fn subtree(&self, root: usize, room: Room<'_>, desk: &mut Desk) {
+    /// Eliminates a part and all below it, whose columns `room` begins with; what it leaves comes last.
+    fn subtree(&self, root: usize, room: Room<'_>, left: &mut Left) {
         if !is_worth(self.plan, root) {
-            return self.in_order(self.plan.parts[root].first..root + 1, room, desk);
+            return self.in_order(self.plan.parts[root].first..root + 1, room, left);
         }
         let (first, last) = halves(self.plan, root);
         let (low, rest) = room.split_at(self.plan.columns_to(first).len());
         let Some(last) = last else {
-            self.subtree(first, low, desk);
-            return self.in_order(root..root + 1, rest, desk);
+            self.subtree(first, low, left);
+            return self.in_order(root..root + 1, rest, left);
         };
         let (high, own) = rest.split_at(self.plan.columns_to(last).len());
         let other = || {
-            let mut desk = Desk::default();
-            desk.clear(self.plan);
-            self.subtree(last, high, &mut desk);
-            desk
+            let mut left = Left::nothing();
+            self.subtree(last, high, &mut left);
+            left
         };
-        let ((), mut other) = rayon::join(|| self.subtree(first, low, desk), other);
-        desk.packed.append(&mut other.packed);
-        desk.good &= other.good;
-        self.in_order(root..root + 1, own, desk);
+        let ((), mut other) = rayon::join(|| self.subtree(first, low, left), other);
+        left.packed.append(&mut other.packed);
+        left.good &= other.good;
+        self.in_order(root..root + 1, own, left);
     }
 
-    /// Eliminates parts one after another, whose columns `room` begins with.
-    fn in_order(&self, parts: Range<usize>, mut room: Room<'_>, desk: &mut Desk) {
+    /// Eliminates parts one after another, whose columns `room` begins with. Nothing in here waits for other threads.
+    fn in_order(&self, parts: Range<usize>, mut room: Room<'_>, Left { packed, good }: &mut Left) {
         let start = self.plan.parts[parts.start].start;
-        let Desk { columns, matrix, places, packed, good } = desk;
+        let thread = rayon::current_thread_index().unwrap_or(0) % self.desks.len();
+        let mut desk = self.desks[thread].lock().expect("no thread panicked");
+        let Desk { columns, matrix, places } = &mut *desk;
+        places.resize(self.plan.order.len(), 0);
         for index in parts {
             let part = &self.plan.parts[index];
             (0..).zip(self.plan.front(part)).for_each(|(place, number)| places[number] = place);
@@ -109,7 +115,7 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
     /// Adds the matrix's own entries of a part: its rows against what is eliminated later; of the last part, what it
     /// shares.
     fn take(&self, index: usize, places: &[usize], columns: &mut [f64], matrix: &mut [f64]) {
-        let Self { plan, stencil, scale } = *self;
+        let Self { plan, stencil, scale, .. } = *self;
         let part = &plan.parts[index];
         let (rows, order) = (part.rows(), part.rim.len());
         // Between two bodies a separator may be without unknowns, too.

@@ -2,6 +2,7 @@
 //! walls, and the flux in the cells of a surface.
 
 use crate::case::{Body, Case, Flow, Quantity};
+use crate::grid::GridAxis;
 use crate::region::Edge;
 use crate::report::Report;
 use crate::validate::lines;
@@ -51,18 +52,25 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 
 /// Warns of histories of the flux in the cells of a surface.
 fn at_surfaces(case: &Case, report: &mut Report<'_>) {
-    let (grid, cell) = (&case.grid, case.grid.shortest());
+    let grid = &case.grid;
     let is_bare =
         |place: [f64; 3]| is_beyond(grid, place).is_none() && !case.bodies.iter().any(|body| is_in(body, grid, place));
     for history in &case.histories {
         let Quantity::Pore { what: Measurement::Flux, at, .. } = history.quantity else { continue };
-        let around = (0..27).map(|n| [n / 9, n / 3 % 3, n % 3].map(|k| f64::from(k) - 1.0));
-        let mut places = around.map(|off| std::array::from_fn(|axis| at[axis] + cell * off[axis]));
+        // Of the cell of the place, which lies in the ground if it lies at its edge.
+        let edge = |axis: &GridAxis, x: f64| {
+            let cell = axis.first_cell(|cell| axis.breakpoint(cell + 1) > x - axis.lower());
+            axis.cell(cell.min(axis.cells() - 1)) * (1.0 - 1e-9)
+        };
+        let cell: Vec<f64> = grid.axes.iter().zip(at).map(|(axis, x)| edge(axis, x)).collect();
+        let around = (0..3_i32.pow(grid.dims() as u32)).map(|n| [n % 3, n / 3 % 3, n / 9].map(|k| f64::from(k) - 1.0));
+        let aside = |off: [f64; 3], axis: usize| if axis < grid.dims() { cell[axis] * off[axis] } else { 0.0 };
+        let mut places = around.map(|off| std::array::from_fn(|axis| at[axis] + aside(off, axis)));
         if places.any(is_bare) {
             report.warn(format!(
                 "history \"{}\": the flux at {:.3?} is less than a cell from a surface: it is right there as long as points fill the cell \
                  as at the start; under strains it jumps as rows of points come and go (by a third under a load that takes .3 of \
-                 the height); take a place more than a cell ({cell} m) inside, or \"water-outflow\" of the drain for what crosses",
+                 the height); take a place more than a cell inside, or \"water-outflow\" of the drain for what crosses",
                 history.name,
                 &at[..grid.dims()]
             ));

@@ -1,7 +1,7 @@
 //! Where a band of shear was not shown to do the work that `band_width` is scaled for.
 
 use super::law::CELLS_OF_BAND;
-use crate::case::{Case, Geometry, Site};
+use crate::case::{Case, Geometry, Rigid, Site};
 use crate::record::Record;
 use crate::report::Report;
 use crate::validate::place::is_at;
@@ -74,6 +74,7 @@ fn unlike_a_band(case: &Case) -> Option<String> {
         [-0.25, 1.25].into_iter().any(|part| is_at(&case.bodies, &case.grid, beyond(part)))
             && places(site, &case.grid).into_iter().any(|at| is_at(&case.bodies, &case.grid, at))
     };
-    let pushes = strips.any(is_narrow) || !case.rigid.is_empty();
+    let is_driven = |body: &Rigid| body.is_moved() || body.free.contains(&true) || body.force != [0.0; 3];
+    let pushes = strips.any(is_narrow) || case.rigid.iter().any(is_driven);
     pushes.then(|| "under a strip, where what yields is wider, curves of two cells were 10.6 % apart".to_owned())
 }

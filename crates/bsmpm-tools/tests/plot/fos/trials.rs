@@ -3,7 +3,7 @@
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process, test_kill_process};
 use serde_json::Value;
@@ -61,8 +61,10 @@ fn a_search_that_is_told_to_end_takes_its_runs_along() {
     let bench = Bench::new(SLOPE, "kink=1.373 lasts=0.1");
     let mut search = bench.command("2", &[]).spawn().unwrap();
     let pids = || fs::read_to_string(bench.path("pids")).unwrap_or_default();
+    let begun = Instant::now();
     while pids().lines().count() < 2 || !pids().ends_with('\n') {
         assert!(search.try_wait().unwrap().is_none(), "it ended by itself");
+        assert!(begun.elapsed() < Duration::from_secs(120), "two trials have not begun");
         thread::sleep(Duration::from_millis(10));
     }
     kill_process(Pid::from_child(&search), Signal::TERM).unwrap();
