@@ -12,6 +12,7 @@ use bsmpm::boundary::load::follower;
 use bsmpm::boundary::{Idle, Surface};
 use bsmpm::control::{Accepted, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
+use bsmpm::free_field;
 use bsmpm::grid::Grid;
 use bsmpm::initial::{self, Equilibrium, Settling};
 use bsmpm::kinematics::Kinematics;
@@ -272,6 +273,16 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.model = next;
         self.stepper.begin_stage();
         Ok(())
+    }
+
+    /// Finds what faces that absorb hold anew, once a stage has changed the ground, or what holds or loads it; the free
+    /// field goes on. Fails on all ranks if there is no equilibrium.
+    pub fn hold(&mut self) -> Result<(), StepError> {
+        let t = self.time();
+        let Self { model, points, halo, solver, .. } = self;
+        points.surface.held.clear();
+        initial::hold_at(model, points, t, (&**halo, solver))?;
+        free_field::go_on(model, points, t)
     }
 
     /// Columns of the whole grid whose points come to this rank's slab.

@@ -37,13 +37,13 @@ pub struct FreeField<const D: usize> {
 struct Beside<const D: usize> {
     face: usize,                   // among those that absorb
     force: Vec<Vector<D>>,         // N, of its stress
-    start: Option<Vec<Vector<D>>>, // N, the same at the start, in the first step
+    start: Option<Vec<Vector<D>>>, // N, the same as the column begins, in its first step
     velocity: Vec<Vector<D>>,      // m/s
 }
 
 impl<const D: usize> FreeField<D> {
-    /// Steps every column from `t` to `t + dt`, each by itself and alike on every rank; the first step begins with
-    /// those of the `points` at the faces. Nothing of a model without such faces.
+    /// Steps every column from `t` to `t + dt`, each by itself and alike on every rank; without columns yet they begin
+    /// with those of the `points` at the faces. Nothing of a model without such faces.
     pub fn after<K: Kinematics<D>>(
         model: &Model<K, D>,
         points: &Points<D>,
@@ -56,7 +56,7 @@ impl<const D: usize> FreeField<D> {
             let alone = beside(model, support)?;
             let (column, start) = match points.free_field.get(number) {
                 Some(column) => (column.clone(), None),
-                None => begin((model, &alone), support, points, halo)?,
+                None => begin((model, &alone), support, (points, t), halo)?,
             };
             let (column, beside) = advance(&alone, support, column, (t, dt))?;
             field.beside.push(Beside { face, start, ..beside });
@@ -82,6 +82,24 @@ impl<const D: usize> FreeField<D> {
     }
 }
 
+/// Goes on beside ground that a stage has changed, at the time `t`, and whose sides are held anew: by these forces
+/// less those of the columns, which act there all along. The columns are held anew, too, as their base may absorb from
+/// now on.
+pub fn go_on<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &mut Points<D>,
+    t: f64,
+) -> Result<(), StepError> {
+    let followers = model.boundary.absorbing().enumerate().filter(|(_, face)| face.follows);
+    for ((face, support), column) in followers.zip(&mut points.free_field) {
+        let now = hold(&beside(model, support)?, support, column, t)?;
+        if let Some(held) = points.surface.held.get_mut(face) {
+            *held = less(held, Some(&now));
+        }
+    }
+    Ok(())
+}
+
 fn less<const D: usize>(forces: &[Vector<D>], start: Option<&[Vector<D>]>) -> Vec<Vector<D>> {
     match start {
         Some(start) => forces.iter().zip(start).map(|(force, start)| force - start).collect(),
@@ -103,13 +121,13 @@ fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<
     Ok(Model { grid, boundary, balances_energy: false, ..model.clone() })
 }
 
-/// The column at the start, and the force of its stress on the face if something holds that; one exchange of its
-/// points.
+/// The column as it begins at the time `t`, and the force of its stress on the face if something holds that; one
+/// exchange of its points.
 #[allow(clippy::type_complexity)]
 fn begin<K: Kinematics<D>, const D: usize>(
     (model, alone): (&Model<K, D>, &Model<K, D>),
     face: &Support<D>,
-    points: &Points<D>,
+    (points, t): (&Points<D>, f64),
     halo: &dyn Halo,
 ) -> Result<(Points<D>, Option<Vec<Vector<D>>>), StepError> {
     let last = face.last_cell(&model.grid);
@@ -122,20 +140,31 @@ fn begin<K: Kinematics<D>, const D: usize>(
     if points.surface.held.is_empty() {
         return Ok((column, None));
     }
+    let force = hold(alone, face, &mut column, t)?;
+    Ok((column, Some(force)))
+}
+
+/// Finds what holds a column as it is at the time `t`, where its base absorbs, and the force of its stress on the face.
+fn hold<K: Kinematics<D>, const D: usize>(
+    alone: &Model<K, D>,
+    face: &Support<D>,
+    column: &mut Points<D>,
+    t: f64,
+) -> Result<Vec<Vector<D>>, StepError> {
     let (tied, mut solver) = (TiedHalo::of(&alone.grid), Band::of(&alone.grid));
-    initial::hold(alone, &mut column, (&tied, &mut solver))?;
+    column.surface.held.clear();
+    initial::hold_at(alone, column, t, (&tied, &mut solver))?;
     for held in &mut column.surface.held {
         let row = held.len() / (alone.grid.order() + 1);
         let first = held[..row].to_vec();
         held.chunks_exact_mut(row).for_each(|layer| layer.copy_from_slice(&first));
     }
-    let shape = Shape::at(&alone.grid, &column)?;
-    let nodes = Nodes::map(alone, &shape, &column, (0.0, 0.0), &tied)?;
-    let grips = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (0.0, 0.0));
-    let problem = Problem { model: alone, shape: &shape, nodes: &nodes, grips: &grips, points: &column, halo: &tied };
-    let trial = Trial::of(alone, &shape, &nodes, &column, &vec![0.0; nodes.free.len()], &tied);
-    let force = force(&problem, &trial, face)?;
-    Ok((column, Some(force)))
+    let shape = Shape::at(&alone.grid, column)?;
+    let nodes = Nodes::map(alone, &shape, column, (t, 0.0), &tied)?;
+    let grips = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, 0.0));
+    let problem = Problem { model: alone, shape: &shape, nodes: &nodes, grips: &grips, points: column, halo: &tied };
+    let trial = Trial::of(alone, &shape, &nodes, column, &vec![0.0; nodes.free.len()], &tied);
+    force(&problem, &trial, face)
 }
 
 /// The points of the one rank that has some, on every rank.

@@ -161,11 +161,22 @@ pub fn hold<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<(), StepError> {
+    hold_at(model, points, 0.0, (halo, solver))
+}
+
+/// The same of the state at a later time, once the ground or what acts on it has changed: the forces of the equilibrium
+/// next to that.
+pub fn hold_at<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &mut Points<D>,
+    t: f64,
+    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+) -> Result<(), StepError> {
     if model.boundary.absorbing().next().is_none() {
         return Ok(());
     }
     let at_rest = &model.at_rest();
-    let Undeformed { shape, mut nodes, mut grips } = Undeformed::of(at_rest, points, halo)?;
+    let Undeformed { shape, mut nodes, mut grips } = Undeformed::at(at_rest, points, t, halo)?;
     let (guess, counts) = (vec![0.0; model.grid.nodes() * D], &mut Counts::default());
     let around = (&mut grips, &*points);
     let found = contact::find(at_rest, &shape, &mut nodes, around, &guess, (halo, solver), counts)?;
@@ -210,7 +221,7 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
     Ok(balance.measure() > model.criteria.force && !RoundOff::of(&problem).covers(&balance, &problem))
 }
 
-/// Steps (1) and (2) at time 0, without motion.
+/// Steps (1) and (2) at a time, without motion.
 struct Undeformed<const D: usize> {
     shape: Shape<D>,
     nodes: Nodes<D>,
@@ -219,8 +230,17 @@ struct Undeformed<const D: usize> {
 
 impl<const D: usize> Undeformed<D> {
     fn of<K: Kinematics<D>>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Result<Self, StepError> {
+        Self::at(model, points, 0.0, halo)
+    }
+
+    fn at<K: Kinematics<D>>(
+        model: &Model<K, D>,
+        points: &Points<D>,
+        t: f64,
+        halo: &dyn Halo,
+    ) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
-        let mut nodes = Nodes::map(model, &shape, points, (0.0, 0.0), halo)?;
+        let mut nodes = Nodes::map(model, &shape, points, (t, 0.0), halo)?;
         // The displacements of a start are none: what it seeks is a stress.
         let followers = std::mem::take(&mut nodes.followers);
         if !followers.is_empty() {
@@ -231,7 +251,7 @@ impl<const D: usize> Undeformed<D> {
             nodes.f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
         }
         let movable = nodes.contacts.movable(&nodes.free);
-        let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (0.0, 0.0));
+        let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, 0.0));
         Ok(Self { shape, nodes, grips })
     }
 

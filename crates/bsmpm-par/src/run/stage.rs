@@ -33,6 +33,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         let [removed, added] =
             self.simulation.begin_stage(taken, |columns| model::placed::<K, D>(&self.case, stage, columns), &idle);
+        if !stage.only_resets() {
+            self.simulation.hold()?;
+        }
         if stage.resets_displacements {
             self.simulation.points.reset_displacements();
         }

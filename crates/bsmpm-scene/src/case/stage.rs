@@ -43,6 +43,11 @@ impl Stage {
         switches || others || self.rests
     }
 
+    /// Whether the ground, what holds and what loads it stay as they are.
+    pub fn only_resets(&self) -> bool {
+        !self.exchanges() && self.remove.is_empty() && self.add.is_empty()
+    }
+
     /// Whether it releases, and whether it applies something.
     pub fn switches(&self, what: Acting) -> [bool; 2] {
         [&self.release, &self.apply].map(|list| list.iter().any(|(_, other)| *other == what))
@@ -198,6 +203,20 @@ impl Case {
         });
         let gravity = self.gravity.iter().map(|gravity| gravity.ramp);
         acting.chain(rigid).chain(gravity).any(|end| end > until * (1.0 + 1e-9))
+    }
+
+    /// Whether a load, by its number, is not whole as soon as it acts.
+    pub(crate) fn grows_from(&self, load: usize) -> bool {
+        let tractions = self.tractions.iter().map(|of| (of.ramp, &of.amplitude));
+        let mut all = tractions.chain(self.point_loads.iter().map(|of| (of.ramp, &of.amplitude)));
+        all.nth(load).is_some_and(|(ramp, amplitude)| ramp > 0.0 || !amplitude.is_empty())
+    }
+
+    /// When the ground begins to shake, s; without end if it does not.
+    pub(crate) fn shakes_from(&self) -> f64 {
+        let first = self.shaking.iter().position(|(_, ground)| *ground != [0.0; 3]);
+        // Linear between rows, from none at 0.
+        first.map_or(f64::INFINITY, |first| if first == 0 { 0.0 } else { self.shaking[first - 1].0 })
     }
 
     /// Whether a strip that acts until a time moves later.

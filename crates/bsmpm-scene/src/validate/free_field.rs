@@ -45,7 +45,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 }
 
 /// From and to along x, m, the cells at a side.
-fn column(case: &Case, upper: bool) -> (f64, f64) {
+pub(super) fn column(case: &Case, upper: bool) -> (f64, f64) {
     let (of, lower) = (&case.grid.axes[0], case.grid.lower()[0]);
     let cells = of.cells();
     let cell = if upper { cells - 1 } else { 0 };

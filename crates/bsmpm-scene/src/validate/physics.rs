@@ -133,9 +133,6 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
                     [initial]",
             );
         }
-        if !case.stages.is_empty() {
-            refuse("holds what [initial] has found there, which stages change: it cannot be used with [[stage]]");
-        }
         if case.boundary[1 - axis].contains(&Support::Contact) {
             refuse(
                 "beside a face in contact: who holds the node that both have, and what it holds of [initial], is not \

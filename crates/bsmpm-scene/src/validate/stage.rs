@@ -1,12 +1,12 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
 use super::history::NAMELESS;
-use super::{place, reduction, rigid, site, strip};
+use super::{free_field, place, reduction, rigid, site, strip};
 use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::{Report, shortened};
-use crate::words::{Side, Word};
+use crate::words::{Geometry, Side, Word};
 
 /// Parts of a step by which stages must lie apart: a step ends at each.
 const APART: f64 = 1e-6;
@@ -151,8 +151,15 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
     let sides = axes.flat_map(|(axis, sides)| [(sides[0], axis, false), (sides[1], axis, true)]);
     for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
         let (support, contact) = (super::support(boundary, side)?, super::contact(boundary, side, factor, report)?);
-        if matches!(support, Support::Absorbing | Support::FreeField) {
-            boundary.error(side.word(), "holds what [initial] has found there: only from the start on", report);
+        if support == Support::FreeField {
+            boundary.error(side.word(), "the free field begins with the run: only from the start on", report);
+        }
+        let is_wet = root.gives("water") || root.named("material").iter().any(|(_, of)| of.gives("drainage"));
+        let is_plane = root.word("geometry") == Some(Geometry::PlaneStrain);
+        if support == Support::Absorbing && (side != Side::Bottom || is_wet || !is_plane) {
+            let message = "a stage may let the bottom of dry ground in plane strain absorb; sides: from the start on, with \
+                           [initial]";
+            boundary.error(side.word(), message, report);
         }
         let moves = |motion: &Record| motion.word::<Side>("face") == Some(side);
         if let Some(motion) = root.records("prescribed").iter().find(|motion| support != Support::Free && moves(motion))
@@ -272,6 +279,7 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             let later = case.stages.iter().map(|later| later.at).filter(|at| *at >= stage.at);
             reduction::divisible(case, &later.collect::<Vec<f64>>(), record, report);
         }
+        beside_absorbing(case, stage, record, report);
         for &body in &stage.add {
             let named = &case.materials[case.bodies[body].material];
             if !named.material.is_linear() {
@@ -306,6 +314,70 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
                 &at[..case.grid.dims()]
             );
             record.error(key, message, report);
+        }
+    }
+}
+
+/// What faces that absorb hold is found anew as a stage begins: of ground at rest, whose loads stay as they are then,
+/// and beside columns of the free field that it leaves alone.
+fn beside_absorbing(case: &Case, stage: &Stage, record: &Record, report: &mut Report<'_>) {
+    let absorbs = |support: Support| matches!(support, Support::Absorbing | Support::FreeField);
+    let faces = case.faces_at(stage.at);
+    if stage.only_resets() || !faces.iter().any(|of| absorbs(of.support)) {
+        return;
+    }
+    let mut refuse = |key: &str, why: &str| {
+        record.error(
+            key,
+            format!("beside faces that absorb, which hold the ground as a stage leaves it: {why}"),
+            report,
+        );
+    };
+    if case.shakes_from() < stage.at {
+        refuse("at", "it must be at rest; let [shaking] begin later, or give reset_displacements alone");
+    }
+    if stage.strength_reduction.is_some() {
+        refuse("strength_reduction", "what fails is not at rest; fix those faces");
+    }
+    if case.is_ever(Support::Contact) || !case.rigid.is_empty() {
+        refuse("at", "with faces in contact or rigid bodies that was not shown to be right; fix those faces");
+    }
+    let grows = |what: Acting| match what {
+        Acting::Load(load) => case.grows_from(load),
+        _ => true,
+    };
+    if case.still_grows(stage.at) || stage.apply.iter().any(|(_, what)| grows(*what)) {
+        refuse(
+            "at",
+            "its loads must be whole then: let those before end their ramp or amplitude, and apply others with ramp = 0",
+        );
+    }
+    if stage.release.iter().any(|(_, what)| !matches!(what, Acting::Load(_))) {
+        refuse("release", "with strips that was not shown to be right; fix those faces");
+    }
+    for of in faces.iter().filter(|of| of.support == Support::FreeField) {
+        let (lower, higher) = free_field::column(case, of.face.upper);
+        let is_in = |body: &usize| {
+            let [from, to] = case.bodies[*body].bounds();
+            from[0] < higher && to[0] > lower
+        };
+        for key in ["add", "remove"] {
+            let bodies = if key == "add" { &stage.add } else { &stage.remove };
+            if bodies.iter().any(is_in) {
+                refuse(
+                    key,
+                    &format!(
+                        "the cells at \"{}\" are the free field, which has begun: keep out of them",
+                        of.face.side(case.geometry).word()
+                    ),
+                );
+            }
+        }
+        if !stage.materials.is_empty() {
+            refuse("materials", "the free field at the sides goes on with the laws it began with; fix those faces");
+        }
+        if stage.faces.iter().any(|of| of.face.axis == 0) {
+            refuse("boundary", "the free field at the sides has begun: change \"bottom\" or \"top\" only");
         }
     }
 }

@@ -322,9 +322,9 @@ pub const TOLD_QUASI_STATIC: &[Row] = &[row(
 
 /// Faces that let waves out, in the case with all keys, which has stages, shakes and starts without stress.
 pub const ABSORBING: &[Row] = &[
-    row("left   = \"roller\"", "left = \"absorbing\"", "boundary.left", "cannot be used with [[stage]]"),
+    row("left   = \"roller\"", "left = \"absorbing\"", "stage.0.at", "let [shaking] begin later").down(103),
     row("left   = \"roller\"", "left = \"absorbing\"", "boundary.left", "the motion of the free field"),
-    row("left   = \"roller\"", "left = \"free-field\"", "boundary.left", "cannot be used with [[stage]]"),
+    row("left   = \"roller\"", "left = \"free-field\"", "stage.1.at", "faces in contact or rigid bodies").down(107),
     row("left   = \"roller\"", "left = \"free-field\"", "boundary.left", "under a free \"top\""),
     row("left   = \"roller\"", "left = \"free-field\"", "boundary.left", "a traction acts on the cells"),
     row("bottom = \"fixed\"", "bottom = \"free-field\"", "boundary.bottom", "for \"left\" and \"right\" only"),

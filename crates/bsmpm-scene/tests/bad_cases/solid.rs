@@ -142,7 +142,7 @@ pub const SOLID: &[Row] = &[
     ),
     row("release  = [\"plate\"]", "remove = [\"block\"]", "footing.rectangle", "no one body from the start to the end")
         .up(37),
-    row("back = \"contact\" }", "back = \"absorbing\" }", "stage.0.boundary.back", "only from the start on"),
+    row("back = \"contact\" }", "back = \"absorbing\" }", "stage.0.boundary.back", "sides: from the start on"),
     row(
         "front = \"roller\"",
         "front = { friction = 1 }, bottom = { friction = 1 }",
