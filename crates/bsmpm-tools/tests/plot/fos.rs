@@ -337,7 +337,7 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
         (
             vec![
                 "material.soil={ model = \"mohr-coulomb-softening\", young = 1e8, poisson = 0.3, density = 2e3, cohesion = 1e4, \
-                  friction = 25, residual_friction = 35, softening_strain = 0.1 }",
+                  friction = 25, residual_friction = 35, residual_cohesion = 1e4, softening_strain = 0.1 }",
             ],
             "a material hardens",
         ),
