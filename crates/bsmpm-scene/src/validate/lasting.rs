@@ -9,6 +9,9 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces::name_of_strip;
 
+/// Part of the largest share or way that the last one may be and count as none: a record of samples ends on no zero.
+const NOTHING: f64 = 0.01;
+
 /// Warns of every load and motion that does not end as it began along an axis that nothing else holds.
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     if !case.is_ever(Support::Absorbing) && !case.is_ever(Support::FreeField) {
@@ -57,7 +60,15 @@ fn lasts(case: &Case, (ramp, amplitude): (f64, &Shares), axis: usize, acts_at_st
         _ => 0.0,
     };
     let last = amplitude.last().map_or(1.0, |(_, share)| share[axis]);
-    last != if is_found { first } else { 0.0 }
+    let largest = amplitude.iter().map(|(_, share)| share[axis].abs()).fold(0.0, f64::max);
+    let largest = if amplitude.is_empty() { 1.0 } else { largest };
+    (last - if is_found { first } else { 0.0 }).abs() > NOTHING * largest
+}
+
+/// Whether what moves along a path ends elsewhere along an axis.
+fn stays_away(path: &MotionPath, axis: usize) -> bool {
+    let largest = path.rows.iter().map(|(_, moved)| moved[axis].abs()).fold(0.0, f64::max);
+    path.rows.last().is_some_and(|(_, moved)| moved[axis].abs() > NOTHING * largest)
 }
 
 /// Pa  what a traction pushes with along an axis, in the mean over its places.
@@ -81,7 +92,7 @@ fn net(case: &Case, traction: &Traction, axis: usize) -> f64 {
 /// Rigid bodies that push along an axis, or stay away from where they began.
 fn rigid(case: &Case, root: &Record, axis: usize) -> impl Iterator<Item = String> {
     let pushes = move |(number, of): (usize, &Rigid)| {
-        let moves = of.path.rows.last().is_some_and(|(_, moved)| moved[axis] != 0.0);
+        let moves = stays_away(&of.path, axis);
         let acting = Acting::Rigid(number);
         let acts = case.acts_since(acting, 0.0) == Some(0.0);
         let pushes = moves || of.force[axis] != 0.0 && lasts(case, (of.ramp, &of.amplitude), axis, acts);
@@ -96,11 +107,10 @@ fn rigid(case: &Case, root: &Record, axis: usize) -> impl Iterator<Item = String
 fn strips(case: &Case, axis: usize) -> impl Iterator<Item = String> {
     let footing = case.footing.iter().map(|of| (of.site, &of.path));
     let all = footing.chain(case.prescribed.iter().map(|of| (of.site, &of.path))).enumerate();
-    let stays_away = move |(number, (site, path)): &(usize, (Site, &MotionPath))| {
+    let lasting = move |(number, (site, path)): &(usize, (Site, &MotionPath))| {
         // What is stuck to a face goes along with it, and what lies before it is pushed.
         let pushes = !matches!(site, Site::Face(_)) || normal_of(*site)[axis] != 0.0;
-        let moved = path.rows.last().is_some_and(|(_, moved)| moved[axis] != 0.0);
-        pushes && moved && !holds_at_rest(case, axis, Some(Acting::Strip(*number)))
+        pushes && stays_away(path, axis) && !holds_at_rest(case, axis, Some(Acting::Strip(*number)))
     };
-    all.filter(stays_away).map(move |(number, _)| name_of_strip(case, number))
+    all.filter(lasting).map(move |(number, _)| name_of_strip(case, number))
 }
