@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 use crate::Error;
@@ -14,13 +14,42 @@ use crate::Error;
 /// # Errors
 /// [`Error::File`] with the system's error; the temporary file is removed and an older `path` stays as it was.
 pub fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<(), Error> {
-    let temporary = temporary(path);
-    let result =
-        write_synced(&temporary, fill).and_then(|()| fs::rename(&temporary, path)).and_then(|()| sync_folder(path));
-    result.map_err(|source| {
-        let _ = fs::remove_file(&temporary);
-        Error::File { action: "write", path: path.to_owned(), source }
-    })
+    Filled::new(path, fill)?.give_name()?;
+    sync_folder(path).map_err(Error::file("write", path))
+}
+
+/// A file that is whole under a temporary name, and removed if it is not given its own.
+#[derive(Debug)]
+pub(crate) struct Filled {
+    file: File,
+    temporary: PathBuf,
+    path: PathBuf,
+}
+
+impl Filled {
+    /// Fills the file.
+    pub fn new(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<Self, Error> {
+        let temporary = temporary(path);
+        let written =
+            write(&temporary, fill).map(|file| Self { file, temporary: temporary.clone(), path: path.into() });
+        written.map_err(|source| {
+            let _ = fs::remove_file(&temporary);
+            Error::File { action: "write", path: path.to_owned(), source }
+        })
+    }
+
+    /// Puts its bytes on the disk, then its name in the place of the temporary one; the folder is still to be synced.
+    pub fn give_name(self) -> Result<(), Error> {
+        let named = self.file.sync_all().and_then(|()| fs::rename(&self.temporary, &self.path));
+        named.map_err(Error::file("write", &self.path))
+    }
+}
+
+impl Drop for Filled {
+    fn drop(&mut self) {
+        // What has its name is there no longer.
+        let _ = fs::remove_file(&self.temporary);
+    }
 }
 
 /// Puts the entry of a file in its folder on the disk.
@@ -29,7 +58,7 @@ pub(crate) fn sync_folder(path: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
-fn write_synced(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<File> {
     // One name for all attempts: what a killed program left is taken away here, and a link put there is not followed.
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
@@ -37,8 +66,7 @@ fn write_synced(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Resu
     }
     let mut writer = BufWriter::with_capacity(1 << 16, File::create_new(path)?);
     fill(&mut writer)?;
-    writer.flush()?;
-    writer.get_ref().sync_all()
+    writer.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
 fn temporary(path: &Path) -> PathBuf {
@@ -51,6 +79,7 @@ fn temporary(path: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Write;
 
     #[test]
     fn a_failed_write_leaves_the_old_file_and_no_other() {

@@ -1,15 +1,21 @@
 //! The frames of a run: `frames/step_*.vtu`, and `frames.pvd`, which gives each its time and is what ParaView opens.
+//!
+//! A run fills a frame's file, and a thread sees to it that the disk has it and gives it its name: a frame needs eight
+//! calls that wait for the disk, some 30 ms, in which the run goes on. Frames that were filled meanwhile share them.
 
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
 
 use serde::{Deserialize, Serialize};
 
+use crate::atomic::{self, Filled};
 use crate::frame::{Frame, Parts};
+use crate::manifest::{Manifest, ManifestOutput};
 use crate::relative::is_plain_relative;
 use crate::xml::tags;
-use crate::{Error, atomic, vtu};
+use crate::{Error, vtu};
 
 /// The file that lists the frames.
 pub const COLLECTION: &str = "frames.pvd";
@@ -27,7 +33,17 @@ pub struct Entry {
 #[derive(Debug)]
 pub struct Frames {
     directory: PathBuf,
-    entries: Vec<Entry>,
+    entries: Vec<Entry>,                                            // of what is listed
+    filled: Vec<FilledFrame>,                                       // that no thread has yet
+    ending: Option<JoinHandle<Result<Vec<ManifestOutput>, Error>>>, // of those before, which are in the entries
+}
+
+/// A frame without its name.
+#[derive(Debug)]
+struct FilledFrame {
+    file: Filled,
+    entry: Entry,
+    manifest: Manifest, // names it
 }
 
 impl Frames {
@@ -38,7 +54,7 @@ impl Frames {
     pub fn create(directory: &Path) -> Result<Self, Error> {
         let folder = directory.join("frames");
         fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
-        Ok(Self { directory: directory.to_owned(), entries: Vec::new() })
+        Ok(Self { directory: directory.to_owned(), entries: Vec::new(), filled: Vec::new(), ending: None })
     }
 
     /// Goes on with the frames of a run, those of `entries` that are there, and lists them anew.
@@ -65,30 +81,72 @@ impl Frames {
     /// Those of [`vtu::write`]; the list then names the frames before only.
     pub fn write(&mut self, frame: &Frame) -> Result<(), Error> {
         vtu::write(&self.directory.join(Self::file(frame.step)), frame)?;
-        self.list(frame)
-    }
-
-    /// The same of a frame whose points come part by part.
-    ///
-    /// # Errors
-    /// Those of [`vtu::write_parts`]; the list then names the frames before only.
-    pub fn write_parts(&mut self, parts: Parts<'_>) -> Result<(), Error> {
-        let head = parts.head.clone();
-        vtu::write_parts(&self.directory.join(Self::file(head.step)), parts)?;
-        self.list(&head)
-    }
-
-    fn list(&mut self, frame: &Frame) -> Result<(), Error> {
-        let file = Self::file(frame.step);
-        self.entries.retain(|entry| entry.file != file);
-        self.entries.push(Entry { time: frame.time, file });
+        self.enter(Entry { time: frame.time, file: Self::file(frame.step) });
         write_collection(&self.directory.join(COLLECTION), &self.entries)
     }
 
-    /// The frames written so far, in their order.
+    /// Fills the file of a frame whose points come part by part, and leaves it to a thread to write the `manifest`,
+    /// which names it, to give the file its name, and to list it. [`Frames::ended`] tells when that is done.
+    ///
+    /// # Errors
+    /// Those of [`vtu::write_parts`], and of the thread that had frames before.
+    pub fn begin(&mut self, parts: Parts<'_>, manifest: &Manifest) -> Result<Vec<ManifestOutput>, Error> {
+        let entry = Entry { time: parts.head.time, file: Self::file(parts.head.step) };
+        // Two of one name at a time have one temporary name.
+        let is_there =
+            self.filled.iter().map(|frame| &frame.entry).chain(&self.entries).any(|one| one.file == entry.file);
+        let mut ended = self.ended(is_there)?;
+        let file = vtu::filled(&self.directory.join(&entry.file), parts)?;
+        self.filled.push(FilledFrame { file, entry, manifest: manifest.clone() });
+        ended.extend(self.ended(false)?);
+        Ok(ended)
+    }
+
+    /// What has been written since this was last asked, with sizes and hashes; of all frames, if it is to `wait`.
+    ///
+    /// # Errors
+    /// Those of the thread; frames that it had no more are lost.
+    pub fn ended(&mut self, wait: bool) -> Result<Vec<ManifestOutput>, Error> {
+        let mut ended = Vec::new();
+        loop {
+            if let Some(ending) = self.ending.take_if(|ending| wait || ending.is_finished()) {
+                ended.extend(ending.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?);
+            }
+            if self.ending.is_some() || self.filled.is_empty() {
+                return Ok(ended);
+            }
+            let filled = std::mem::take(&mut self.filled);
+            filled.iter().for_each(|frame| self.enter(frame.entry.clone()));
+            let (directory, entries) = (self.directory.clone(), self.entries.clone());
+            self.ending = Some(thread::spawn(move || end(&directory, filled, &entries)));
+        }
+    }
+
+    fn enter(&mut self, entry: Entry) {
+        self.entries.retain(|other| other.file != entry.file);
+        self.entries.push(entry);
+    }
+
+    /// The frames that are listed, or are about to be, in their order.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
+}
+
+/// Gives frames that were filled their names, once the manifest has these, and lists them.
+fn end(directory: &Path, filled: Vec<FilledFrame>, entries: &[Entry]) -> Result<Vec<ManifestOutput>, Error> {
+    filled.last().map_or(Ok(()), |newest| newest.manifest.write(directory))?;
+    let mut outputs = Vec::new();
+    for FilledFrame { file, entry, .. } in filled {
+        file.give_name()?;
+        outputs.push(ManifestOutput { path: entry.file, bytes: None, blake3: None });
+    }
+    let list = directory.join(COLLECTION);
+    let first = outputs.first().map(|output| directory.join(&output.path));
+    first.map_or(Ok(()), |first| atomic::sync_folder(&first).map_err(Error::file("write", &first)))?;
+    write_collection(&list, entries)?;
+    outputs.iter_mut().try_for_each(|output| output.complete(directory))?;
+    Ok(outputs)
 }
 
 fn write_collection(path: &Path, entries: &[Entry]) -> Result<(), Error> {

@@ -170,13 +170,13 @@ impl Manifest {
         }
     }
 
-    /// Notes the size and hash of a named output that is complete, so that the end of the run need not read it again.
-    ///
-    /// # Errors
-    /// [`Error::File`] when the file cannot be read.
-    pub fn complete(&mut self, directory: &Path, path: &str) -> Result<(), Error> {
-        let output = self.outputs.iter_mut().find(|output| output.path == path);
-        output.map_or(Ok(()), |output| output.complete(directory))
+    /// Notes the size and hash of named outputs that are complete, so that the end of the run need not read them again.
+    pub fn complete(&mut self, written: Vec<ManifestOutput>) {
+        for output in &mut self.outputs {
+            if let Some(written) = written.iter().find(|written| written.path == output.path) {
+                output.clone_from(written);
+            }
+        }
     }
 
     /// Notes the size and hash of every named output as it now stands in `directory`; one that is not there has none,

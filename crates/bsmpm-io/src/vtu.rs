@@ -5,7 +5,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use crate::Error;
-use crate::atomic;
+use crate::atomic::{self, Filled};
 use crate::frame::{Field, FieldValues, Frame, Parts};
 
 pub use crate::vtu_read::read;
@@ -34,10 +34,16 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), Error> {
 /// # Errors
 /// As [`write()`]; [`Error::Length`] if not so many points come as were told.
 pub fn write_parts(path: &Path, parts: Parts<'_>) -> Result<(), Error> {
+    filled(path, parts)?.give_name()?;
+    atomic::sync_folder(path).map_err(Error::file("write", path))
+}
+
+/// The same under a temporary name.
+pub(crate) fn filled(path: &Path, parts: Parts<'_>) -> Result<Filled, Error> {
     parts.head.check(path)?;
     let mut refused = None;
-    let written = atomic::replace(path, |file| fill(file, path, parts, &mut refused));
-    refused.map_or(written, Err)
+    let filled = Filled::new(path, |file| fill(file, path, parts, &mut refused));
+    refused.map_or(filled, Err)
 }
 
 fn fill(

@@ -140,6 +140,7 @@ impl Ledger {
     pub fn abandon(&mut self, exit_code: u8) {
         self.manifest.finish(Status::Failed, exit_code);
         // On a full disk this cannot be written, either.
+        let _ = self.end_frames(true);
         let _ = self.manifest.write(self.directory.path());
     }
 
@@ -226,6 +227,7 @@ impl Ledger {
             imbalance: cost.imbalance,
         };
         self.steps.row(&row.cells())?;
+        self.end_frames(false)?;
         self.residuals(number, accepted)
     }
 
@@ -320,11 +322,23 @@ impl Ledger {
 
     /// A frame; the manifest names it before it is there.
     pub fn frame(&mut self, parts: Parts<'_>) -> Result<(), Error> {
-        let file = Frames::file(parts.head.step);
-        self.manifest.name_output(&file);
-        self.manifest.write(self.directory.path())?;
-        self.frames.write_parts(parts)?;
-        self.manifest.complete(self.directory.path(), &file)
+        self.manifest.name_output(&Frames::file(parts.head.step));
+        let ended = self.frames.begin(parts, &self.manifest)?;
+        self.manifest.complete(ended);
+        Ok(())
+    }
+
+    /// Notes frames that have got their names; of all of them, if it is to `wait`.
+    fn end_frames(&mut self, wait: bool) -> Result<(), Error> {
+        let ended = self.frames.ended(wait)?;
+        self.manifest.complete(ended);
+        Ok(())
+    }
+
+    /// Writes the manifest as it is, when nobody else does.
+    fn write_manifest(&mut self) -> Result<(), Error> {
+        self.end_frames(true)?;
+        self.manifest.write(self.directory.path())
     }
 
     /// `failure.json`, and what the manifest says of it.
@@ -342,9 +356,10 @@ impl Ledger {
 
     /// Notes how the run ended, and sizes and hashes of all files; writes the manifest for the last time.
     pub fn close(&mut self, status: Status, exit_code: u8) -> Result<(), Error> {
+        self.end_frames(true)?;
         self.manifest.finish(status, exit_code);
         self.manifest.seal(self.directory.path())?;
-        self.manifest.write(self.directory.path())
+        self.write_manifest()
     }
 
     /// Decides the checks of a run that reached its end; true if all passed.

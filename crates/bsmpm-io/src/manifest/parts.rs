@@ -253,7 +253,7 @@ impl ManifestOutput {
         self.complete(directory)
     }
 
-    pub(super) fn complete(&mut self, directory: &Path) -> Result<(), Error> {
+    pub(crate) fn complete(&mut self, directory: &Path) -> Result<(), Error> {
         let path = directory.join(&self.path);
         let mut hasher = blake3::Hasher::new();
         let hashed = File::open(&path).and_then(|file| hasher.update_reader(file).map(|hashed| hashed.count()));

@@ -2,6 +2,7 @@
 
 use bsmpm_io::frame::{Field, FieldValues, Frame, Parts};
 use bsmpm_io::frames::{Frames, read_collection};
+use bsmpm_io::manifest::{Manifest, ManifestCase};
 use bsmpm_io::{Error, vtu};
 
 use crate::listing;
@@ -210,4 +211,57 @@ fn the_list_goes_on_with_the_frames_that_are_there() {
     assert_eq!(read_collection(dir.path()).unwrap(), [entries[0].clone(), entries[2].clone()]);
     again.write(&Frame { step: 3, time: 3.0, ..frame(2) }).unwrap();
     assert_eq!(again.entries().len(), 3);
+}
+
+/// A manifest, and a step's frame in two parts.
+fn begin(frames: &mut Frames, manifest: &mut Manifest, step: u64, points: usize) -> Result<(), Error> {
+    let frame = Frame { step, time: step as f64, ..frame(points) };
+    let mut parts = [0..1, 1..points].into_iter().map(|range| part(&frame, range));
+    manifest.name_output(&Frames::file(step));
+    let parts = Parts { head: frame.without_points(), points, names: &[], next: &mut || parts.next() };
+    frames.begin(parts, manifest).map(|ended| manifest.complete(ended))
+}
+
+#[test]
+fn frames_that_a_thread_ends_are_those_that_are_written_at_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let case = ManifestCase::new("a.toml", "A", "plane-strain", String::new());
+    let mut manifest = Manifest::begin("0.1.0", vec![], case);
+    let mut frames = Frames::create(dir.path()).unwrap();
+    // A burst of them, the last one of a step that is there already.
+    for (step, points) in [(0, 2), (1, 3), (2, 4), (3, 5), (3, 6)] {
+        begin(&mut frames, &mut manifest, step, points).unwrap();
+    }
+    let ended = frames.ended(true).unwrap();
+    manifest.complete(ended);
+    assert_eq!(read_collection(dir.path()).unwrap(), frames.entries());
+    assert_eq!(frames.entries().iter().map(|entry| entry.time).collect::<Vec<_>>(), [0.0, 1.0, 2.0, 3.0]);
+    assert_eq!(vtu::read(&dir.path().join(Frames::file(3))).unwrap().position.len(), 6);
+    for output in &manifest.outputs {
+        let bytes = std::fs::read(dir.path().join(&output.path)).unwrap();
+        assert_eq!(output.bytes, Some(bytes.len() as u64), "{output:?}");
+        assert_eq!(output.blake3, Some(blake3::hash(&bytes).to_hex().to_string()), "{output:?}");
+    }
+    let named = Manifest::read(dir.path()).unwrap().outputs;
+    assert!(named.iter().map(|output| &output.path).eq(manifest.outputs.iter().map(|output| &output.path)));
+    assert_eq!(listing(&dir.path().join("frames")).len(), 4, "no temporary file");
+    assert!(frames.ended(true).unwrap().is_empty());
+}
+
+#[test]
+fn what_a_thread_could_not_end_is_an_error_of_the_next_frame_or_of_the_end() {
+    let dir = tempfile::tempdir().unwrap();
+    let case = ManifestCase::new("a.toml", "A", "plane-strain", String::new());
+    let mut manifest = Manifest::begin("0.1.0", vec![], case);
+    let mut frames = Frames::create(dir.path()).unwrap();
+    // A folder of that name is in the way of the file.
+    std::fs::create_dir(dir.path().join(Frames::file(1))).unwrap();
+    begin(&mut frames, &mut manifest, 0, 2).unwrap();
+    let ended = frames.ended(true).unwrap();
+    assert_eq!(ended.len(), 1);
+    begin(&mut frames, &mut manifest, 1, 2).unwrap();
+    let failed = frames.ended(true);
+    assert!(matches!(failed, Err(Error::File { action: "write", .. })), "{failed:?}");
+    assert_eq!(read_collection(dir.path()).unwrap().len(), 1, "it lists the frames before only");
+    assert_eq!(listing(&dir.path().join("frames")).len(), 1, "no temporary file");
 }

@@ -63,7 +63,7 @@ impl Ledger {
     /// checkpoint of that step.
     pub fn files(&mut self, step: u64) -> Result<Files, Error> {
         checkpoint::names(step).iter().for_each(|name| self.manifest.name_output(name));
-        self.manifest.write(self.directory.path())?;
+        self.write_manifest()?;
         Ok(Files {
             manifest: self.manifest.clone(),
             history: self.history.mark()?,
@@ -93,7 +93,7 @@ impl Ledger {
             (output.bytes, output.blake3) = (Some(found.record.bytes), Some(found.record.blake3.clone()));
         }
         self.manifest.checkpoint = name;
-        self.manifest.write(path)
+        self.write_manifest()
     }
 }
 
