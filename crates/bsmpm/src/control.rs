@@ -93,7 +93,7 @@ impl Stepper {
     /// given up for those that it has.
     pub fn resume(guess: Vec<f64>, mut at: Progress, schedule: &Schedule) -> Option<Self> {
         let times = [at.t, at.guess_dt].into_iter().chain(at.nominal.into_iter().flat_map(|(from, to)| [from, to]));
-        let budget = at.budget.map_or([0.0; 5], |budget| budget.numbers());
+        let budget = at.budget.map_or([0.0; 6], |budget| budget.numbers());
         let sound = times.chain(budget).all(f64::is_finite) && at.cuts <= MOST_CUTS && at.tick < TICKS;
         if !sound || !at.tick.is_multiple_of(TICKS >> at.cuts) {
             return None;

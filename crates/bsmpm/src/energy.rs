@@ -155,6 +155,7 @@ impl Books {
 #[derive(Clone, Debug)]
 pub struct Draft {
     flows: Flows<Exact>,
+    damped: Exact, // part of what is dissipated
     elastic: Exact,
     dry: Option<Vec<f64>>, // kg  masses before the points take water in, where it flows
     rubbed: Exact,         // half of the work of friction and dashpots at faces, part of the external work
@@ -205,9 +206,11 @@ impl Draft {
             |p: usize| [answers[p].dissipation, answers[p].elastic_energy].map(|dense| points.volume[p] * dense);
         let [plastic, mut elastic] = threads::sums(points.len(), stored);
         flows.plastic = plastic;
+        let mut damped = Exact::ZERO;
         if !model.damping.is_empty() {
-            let damped = |p: usize| found.trial.viscous(model, points, p).map_or(0.0, |viscous| viscous.dissipation);
-            flows.plastic += &threads::sum(points.len(), |p| points.volume[p] * damped(p));
+            let taken = |p: usize| found.trial.viscous(model, points, p).map_or(0.0, |viscous| viscous.dissipation);
+            damped = threads::sum(points.len(), |p| points.volume[p] * taken(p));
+            flows.plastic += &damped;
         }
         if model.balances_energy {
             flows.integration -= &flows.plastic;
@@ -220,7 +223,7 @@ impl Draft {
             elastic += &water.held;
         }
         let dry = nodes.pores.is_some().then(|| points.mass.to_vec());
-        let mut draft = Self { flows, elastic, dry, rubbed, t, dt };
+        let mut draft = Self { flows, damped, elastic, dry, rubbed, t, dt };
         if model.balances_energy {
             draft.add_losses(problem, (found, answers));
         }
@@ -264,7 +267,7 @@ impl Draft {
         surface: &Surface<D>,
         halo: &dyn Halo,
     ) -> (Option<Flows>, Turnover) {
-        let Self { flows: mut own, elastic: strained, dry, rubbed, t, dt } = self;
+        let Self { flows: mut own, damped, elastic: strained, dry, rubbed, t, dt } = self;
         let moving = kinetic(points);
         if let Some((dry, motion)) = dry.zip(points.motion.as_ref()) {
             let masses = points.mass.iter().zip(dry);
@@ -277,7 +280,7 @@ impl Draft {
         // Where loads grow in the first step, forces at its end do up to twice the work that is counted by their mean:
         // of friction and dashpots half is left out of the bound on what is made.
         external -= &rubbed;
-        let mut sums = vec![external, own.plastic.clone(), moving.clone(), strained];
+        let mut sums = vec![external, own.plastic.clone(), damped, moving.clone(), strained];
         if model.balances_energy {
             own.transfer -= &moving;
             own.smoothing -= &elastic(model, points, t + dt);
@@ -286,11 +289,11 @@ impl Draft {
         let sums = halo.total(&sums);
         // The loads' points are the same on every rank.
         let (loads, loads_grown) = load::work(&model.boundary.loads, (&points.surface, surface), (t, dt));
-        let stored = Stored { kinetic: sums[2], elastic: sums[3] };
-        let turnover = Turnover { external: sums[0] + loads, plastic: sums[1], stored };
+        let stored = Stored { kinetic: sums[3], elastic: sums[4] };
+        let turnover = Turnover { external: sums[0] + loads, plastic: sums[1], damped: sums[2], stored };
         let flows = model.balances_energy.then(|| {
             let mut flows = Flows::default();
-            flows.each().into_iter().zip(&sums[4..]).for_each(|(flow, sum)| *flow = *sum);
+            flows.each().into_iter().zip(&sums[5..]).for_each(|(flow, sum)| *flow = *sum);
             flows.external += loads;
             flows.integration -= loads_grown;
             flows

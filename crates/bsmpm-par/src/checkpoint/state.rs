@@ -292,6 +292,8 @@ struct BudgetFields {
     start: f64,
     external: f64,
     plastic: f64,
+    #[serde(default)]
+    damped: f64,
     largest: f64,
     growth: f64,
 }
@@ -349,7 +351,8 @@ mod tests {
 
     #[test]
     fn step_control_reads_back_and_that_of_a_version_without_a_budget_is_read() {
-        let budget = Budget { start: 0.1, external: 1.0 / 3.0, plastic: 2e-17, largest: 1e3, growth: 0.01 };
+        let budget =
+            Budget { start: 0.1, external: 1.0 / 3.0, plastic: 2e-17, damped: 0.7, largest: 1e3, growth: 0.01 };
         let kept = StateForm(Progress { t: 0.3, budget: Some(budget), ..Progress::default() });
         let text = serde_json::to_string(&kept).unwrap();
         assert_eq!(serde_json::from_str::<StateForm>(&text).unwrap(), kept);
