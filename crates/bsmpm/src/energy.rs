@@ -208,7 +208,7 @@ impl Draft {
         flows.plastic = plastic;
         let mut damped = Exact::ZERO;
         if !model.damping.is_empty() {
-            let taken = |p: usize| found.trial.viscous(model, points, p).map_or(0.0, |viscous| viscous.dissipation);
+            let taken = |p: usize| found.trial.viscous_at(model, points, p).map_or(0.0, |viscous| viscous.dissipation);
             damped = threads::sum(points.len(), |p| points.volume[p] * taken(p));
             flows.plastic += &damped;
         }
@@ -241,7 +241,10 @@ impl Draft {
         let (pressures, volume) = (Pressures::of(problem, &found.trial), problem.volume());
         let work_of = |p: usize, grad: K::Gradient| {
             let tau = pressures.acting::<K, D>(p, volume[p], answers[p].tau);
-            let tau = found.trial.pressed(p, found.trial.damped(model, points, p, tau));
+            let mut tau = found.trial.pressed(p, tau);
+            if let Some(viscous) = found.trial.viscous_at(model, points, p) {
+                tau.0.iter_mut().zip(viscous.tau.0).for_each(|(tau, more)| *tau += more);
+            }
             volume[p] * K::flux(&tau, &found.trial.dF(p)).dot(&grad)
         };
         let work = transfer::gradients::<K, D, _>((shape, &points.x), u, work_of);

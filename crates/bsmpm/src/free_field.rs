@@ -235,7 +235,7 @@ fn force<K: Kinematics<D>, const D: usize>(
         let response = trial.respond(model, points, p);
         let response = response.map_err(|source| StepError::Material { id: points.id[p], source })?;
         let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
-        let flux = K::flux(&trial.damped(model, points, p, tau), &trial.dF(p));
+        let flux = K::flux(&trial.damped(model, points, (p, &response), tau), &trial.dF(p));
         Ok(std::array::from_fn(|i| outward * flux[(i, face.axis)] * volume[p] / width))
     };
     let fluxes: Vec<[f64; D]> = (0..points.len()).map(flux).collect::<Result<_, StepError>>()?;

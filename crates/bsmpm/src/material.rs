@@ -220,6 +220,25 @@ macro_rules! laws {
                 self.stress_of(&Spectrum::general(b_trial)?, state)
             }
 
+            /// What the return takes from the stress of a trial of which [`Material::stress`] is `tau`, Pa; `None` as
+            /// there, and of elasticity that is not linear.
+            #[inline(always)]
+            pub fn returned<R: Real>(&self, b_trial: [R; 6], in_plane: bool, tau: &Symmetric<R>) -> Option<Symmetric<R>> {
+                let [xx, yy, zz, xy, ..] = b_trial;
+                let spectrum =
+                    if in_plane { Spectrum::planar([xx, yy, zz, xy])? } else { Spectrum::general(b_trial)? };
+                let trial = match self {
+                    $(Self::$Law(law) if <$module::$Law as Law>::LINEAR => spectrum.assemble(law.stress(spectrum.eps)),)*
+                    _ => return None,
+                };
+                // Not by a closure: see `Spectrum::planar`.
+                let mut taken = trial;
+                for k in 0..6 {
+                    taken.0[k] = trial.0[k] - tau.0[k];
+                }
+                Some(taken)
+            }
+
             #[inline(always)]
             fn stress_of<R: Real>(&self, spectrum: &Spectrum<R>, state: &[R]) -> Option<Symmetric<R>> {
                 let tau = match self {

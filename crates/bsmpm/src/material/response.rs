@@ -117,6 +117,24 @@ impl Response {
         }
     }
 
+    /// What the return took from the stress of the trial, Pa: `D : (ε_trial - εᵉ)`; `None` where there was none.
+    pub fn returned(&self) -> Option<Symmetric> {
+        if let Some(trial) = self.unreturned() {
+            let (trial, tau) = (trial.tau().0, self.tau().0);
+            return Some(Symmetric(std::array::from_fn(|k| trial[k] - tau[k])));
+        }
+        let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);
+        let plastic = [0, 1, 2].map(|k| eps[k] - eps_e[k]);
+        (self.branch() != Branch::Elastic).then(|| self.trial.assemble(self.moduli.stress(plastic)))
+    }
+
+    /// The response of material that does not yield, of this one's moduli, to the same trial: where this one yields and
+    /// its elasticity is linear.
+    pub fn unreturned(&self) -> Option<Self> {
+        let yields = self.branch() != Branch::Elastic && self.flowed.is_linear();
+        yields.then(|| Self { tau: self.moduli.stress(self.trial.eps), flowed: Flowed::Elastic, ..*self })
+    }
+
     /// Puts the law's state after the return in the place of that before it.
     pub fn advance(&self, state: &mut [f64]) {
         self.flowed.advance(state);

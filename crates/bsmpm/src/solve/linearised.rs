@@ -13,7 +13,6 @@ use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
-use crate::step::damping::Viscous;
 use crate::step::problem::Problem;
 use crate::step::residual::Residual;
 use crate::step::trial::Trial;
@@ -100,9 +99,18 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 }
                 K::working(&(change * inverse.transpose())) * volume
             };
-            let viscous = trial.viscous(problem.model, points, p);
+            let viscous = trial.viscous(problem.model, points, p, &response);
+            let unreturned = viscous.as_ref().and_then(|_| Some(response.unreturned()?.tangent()));
+            let viscous = viscous.map(|viscous| {
+                let tau = viscous.tau.full();
+                let change = move |l: &Tensor| {
+                    let returned = unreturned.as_ref().map(|trial| trial.apply(l) - tangent.apply(l));
+                    viscous.apply(l, returned)
+                };
+                (tau, change)
+            });
             moduli.push(K::Gradient::moduli(|k, l| match &viscous {
-                Some(viscous) => unit(k, l) + viscous_flux::<K, D>(viscous, &inverse, (k, l)) * volume,
+                Some((tau, change)) => unit(k, l) + viscous_flux::<K, D>((tau, change), &inverse, (k, l)) * volume,
                 None => unit(k, l),
             }));
             if let Some(dilation) = &mut dilation {
@@ -113,8 +121,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 if pressures.at(p).is_some() {
                     change -= Tensor::identity() * works::<K, D>(&change);
                 }
-                if let Some(viscous) = &viscous {
-                    change += viscous.apply(&K::dilation());
+                if let Some((_, viscous)) = &viscous {
+                    change += viscous(&K::dilation());
                 }
                 let change = change * inverse.transpose();
                 let flux = K::working(&change) * volume;
@@ -257,12 +265,12 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
 
 /// Change of the flux of a viscous stress for a unit gradient, per volume: (d tau_v - tau_v l^T) dF^-T.
 fn viscous_flux<K: Kinematics<D>, const D: usize>(
-    viscous: &Viscous,
+    (tau, change): (&Tensor, &impl Fn(&Tensor) -> Tensor),
     inverse: &Tensor,
     (row, column): (usize, usize),
 ) -> K::Gradient {
     let l = K::gradient::<f64>(&K::Gradient::unit(row, column)) * inverse;
-    K::working(&((viscous.apply(&l) - viscous.tau.full() * l.transpose()) * inverse.transpose()))
+    K::working(&((change(&l) - tau * l.transpose()) * inverse.transpose()))
 }
 
 /// Change of the flux for a gradient: sum_kl moduli_kl grad_kl.

@@ -93,7 +93,7 @@ impl InternalForce {
         let flux = |p: usize| match trial.respond(model, points, p) {
             Ok(response) => {
                 let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
-                let tau = trial.pressed(p, trial.damped(model, points, p, tau));
+                let tau = trial.pressed(p, trial.damped(model, points, (p, &response), tau));
                 K::flux(&tau, &trial.dF(p)) * volume[p]
             }
             Err(_) => {

@@ -127,20 +127,18 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         let Self { model, shape, nodes, points, coupling, .. } = *self;
         transfer::slopes_of::<K, D>((shape, &points.x), p, slopes);
         let volume = self.volume[p];
-        let damped = self.damping.relative(points.material[p]);
-        let mut raised = 0.0;
-        if let Some(stiffness) = stiffness {
-            let (moduli, bulk) = of_point::<K, D>(stiffness, volume, coupling.is_some());
+        // What damps a point is its stiffness, too, times a share.
+        let damped = 1.0 + self.damping.relative(points.material[p]).unwrap_or(0.0);
+        let raised = if let Some(stiffness) = stiffness {
+            let (moduli, bulk) = of_point::<K, D>(stiffness, volume * damped, coupling.is_some());
             add_point::<K, D>(&moduli, slopes, Pairs::Upper, &mut part.block);
-            raised = bulk;
-        }
-        // Of a point that yields only what damps it is elastic.
-        if let Some(share) = if stiffness.is_some() { damped } else { Some(1.0 + damped.unwrap_or(0.0)) } {
+            bulk * damped
+        } else {
             let material = &model.materials[usize::from(points.material[p])];
-            let relative = share * material.relative_stiffness(points.height(p));
+            let relative = damped * material.relative_stiffness(points.height(p));
             accumulate::<K, D>(volume * relative, slopes, moments);
-            raised += bulk * relative;
-        }
+            bulk * relative
+        };
         if let Some(dilations) = &mut part.dilations {
             let mut dilation = [Vector::zeros(); MOST];
             let dilation = &mut dilation[..slopes.len()];

@@ -162,8 +162,11 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         if let Some(lame) = self.damping.lame(model, points, eight.point(0)) {
             let one = Lanes::splat(simd, 1.0);
             let stretch = K::push_forward(&dF_bar, &Symmetric([one, one, one, zero, zero, zero]));
-            let viscous = damping::stress(&stretch, lame).0;
-            tau = Symmetric(std::array::from_fn(|k| tau.0[k] + viscous[k]));
+            let (viscous, share) = (damping::stress(&stretch, lame).0, self.damping.relative(material)?);
+            let returned = law.returned(b_trial, D == 2, &tau)?.0;
+            for k in 0..6 {
+                tau.0[k] = tau.0[k] + (viscous[k] - returned[k] * share);
+            }
         }
         if let Some(pore) = &self.pore {
             let pore = eight.of(pore);
@@ -173,20 +176,33 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         Some((dF, tau))
     }
 
-    /// The viscous stress of point `p` beside that of its law, if it has any.
+    /// The viscous stress of point `p` beside that of its law's `response`, if it has any.
     #[inline]
-    pub fn viscous(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Viscous> {
-        let lame = self.damping.lame(model, points, p)?;
-        Some(Viscous::of(&K::dilate(&self.dF(p), self.ratio(model, points, p)), lame))
+    pub fn viscous(&self, model: &Model<K, D>, points: &Points<D>, p: usize, response: &Response) -> Option<Viscous> {
+        let (lame, share) = (self.damping.lame(model, points, p)?, self.damping.relative(points.material[p])?);
+        let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
+        Some(Viscous::of(&dF_bar, lame, (response.returned(), share), points.gap_of(p)))
     }
 
-    /// `tau` and the viscous stress of point `p`, Pa.
+    /// `tau` and the viscous stress of point `p`, Pa, of the constitution's `response` there.
     #[inline]
-    pub fn damped(&self, model: &Model<K, D>, points: &Points<D>, p: usize, mut tau: Symmetric) -> Symmetric {
-        if let Some(viscous) = self.viscous(model, points, p) {
+    pub fn damped(
+        &self,
+        model: &Model<K, D>,
+        points: &Points<D>,
+        (p, response): (usize, &Response),
+        mut tau: Symmetric,
+    ) -> Symmetric {
+        if let Some(viscous) = self.viscous(model, points, p, response) {
             tau.0.iter_mut().zip(viscous.tau.0).for_each(|(tau, more)| *tau += more);
         }
         tau
+    }
+
+    /// The viscous stress of point `p` where only its state is known, if it has any.
+    pub(crate) fn viscous_at(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Viscous> {
+        self.damping.relative(points.material[p])?;
+        self.viscous(model, points, p, &self.respond(model, points, p).ok()?)
     }
 
     /// `tau` of the skeleton less what the water presses with at point `p`, Pa.

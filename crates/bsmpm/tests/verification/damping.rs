@@ -1,5 +1,5 @@
 //! Damping: that of the methods against their theory, one degree of freedom exactly and a mode of the elastic bar; that
-//! of materials (Kelvin-Voigt) by the same mode, in bodies that turn, and in Newton's tangent.
+//! of materials (Kelvin-Voigt) by the same mode, in bodies that turn or flow, and in Newton's tangent.
 
 use super::bar::{CELLS, PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
@@ -251,6 +251,27 @@ fn newtons_tangent_knows_the_viscous_stress() {
         println!("{method:?}: {:.1e}, undamped {:.1e}, {most} iterations", far(&auto, &newton), far(&auto, &plain));
         assert!(far(&auto, &newton) <= 1e-7 && far(&auto, &plain) > 1e-3 && most <= 9);
     }
+}
+
+/// A sheared layer carries its strength, however fast: elastic strain alone is damped.
+#[test]
+fn what_flows_is_not_damped() {
+    let shear = |time: f64| {
+        let elastic = Elastic { young: 100.0, poisson: 0.3 };
+        let law = Material::MohrCoulomb(MohrCoulomb::new(elastic, 0.0, 0.0, 0.2));
+        let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.5, 8, 2), axis(0.5, 2, 2)], law, Regime::Dynamic)
+            .body([2..5, 0..2], 3, 1.0, |x| [x[1], 0.0].into())
+            .support(Support::fixed(1, false))
+            .support(Support::moving(1, true, [Some(1.0), Some(0.0)]));
+        scene.model.damping = if time > 0.0 { vec![time] } else { Vec::new() };
+        let (scene, _) = scene.solved(0.005, 0.2);
+        let stress = |p: usize| scene.points.sigma.at(p).0[3] * scene.points.volume[p];
+        (0..scene.points.len()).map(stress).sum::<f64>()
+    };
+    // 38.5 x .05 x 1 Pa of viscous stress by the rate of all strain, ten times the strength.
+    let [plain, damped] = [0.0, 0.05].map(shear);
+    println!("{plain} {damped}");
+    assert!((damped / plain - 1.0).abs() <= 0.02, "{plain} {damped}");
 }
 
 /// Bodies that move and turn as if rigid keep their energy: strain alone is damped.
