@@ -5,6 +5,7 @@ use crate::checkpoint::{Refusal, agree};
 use crate::cli::Arguments;
 use crate::ledger::Ledger;
 use crate::log::Log;
+use crate::machine;
 use crate::record::Recorder;
 use crate::restart::{self, Resumed, RunStart};
 use crate::run::{Before, Run, Task};
@@ -72,7 +73,7 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     let mut scene = scene::<K, D>(seam, case, cut, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
     let told = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
     start.warn(told);
-    start.warn(crowded(arguments.threads));
+    start.warn(crowded(&universe.world(), arguments.threads));
     let before = before(&start, &arguments.directory());
     let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;
     if let RunStart::Resumed(resumed) = start {
@@ -83,15 +84,21 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     Ok(Run::new((universe, hdf5), task, scene, (ledger, log), timers, before).until_the_end())
 }
 
-/// What is wrong where this process has fewer cores than threads, as where `mpirun` binds a rank to one core.
-fn crowded(threads: u32) -> Option<String> {
+/// What is wrong where this process has fewer cores than threads, as where `mpirun` binds a rank to one core, or this
+/// host fewer than all of its ranks have threads. Collective.
+fn crowded(world: &SimpleCommunicator, threads: u32) -> Option<String> {
+    let here = u64::from(threads) * u64::from(world.split_shared(world.rank()).size().unsigned_abs());
     let cores = std::thread::available_parallelism().ok()?.get();
-    (threads as usize > cores).then(|| {
-        format!(
+    if threads as usize > cores {
+        return Some(format!(
             "--threads {threads}: this rank may use {cores} core(s), where threads take turns; mpirun --bind-to none, or \
              --map-by slot:PE={threads}, gives it more"
-        )
-    })
+        ));
+    }
+    let all = machine::cores().filter(|&all| threads > 1 && here > all)?;
+    Some(format!(
+        "--threads {threads}: the ranks on this host have {here} threads for {all} cores, where they take turns"
+    ))
 }
 
 /// The output directory, on rank 0, which from now on is nobody else's. Collective.
