@@ -153,19 +153,19 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         for (k, variable) in state[..width].iter_mut().enumerate() {
             *variable = Lanes::from_fn(simd, |lane| points.state_of(eight.point(lane))[k]);
         }
-        let mut tau = if D == 2 {
+        let lame = self.damping.lame(model, points, eight.point(0));
+        let [mut tau, returned] = if D == 2 {
             let [xx, yy, zz, xy, ..] = b_trial;
-            law.stress([xx, yy, zz, xy], &state[..width])?
+            law.stress([xx, yy, zz, xy], &state[..width], lame.is_some())?
         } else {
-            law.stress_in_space(b_trial, &state[..width])?
+            law.stress_in_space(b_trial, &state[..width], lame.is_some())?
         };
-        if let Some(lame) = self.damping.lame(model, points, eight.point(0)) {
+        if let Some(lame) = lame {
             let one = Lanes::splat(simd, 1.0);
             let stretch = K::push_forward(&dF_bar, &Symmetric([one, one, one, zero, zero, zero]));
             let (viscous, share) = (damping::stress(&stretch, lame).0, self.damping.relative(material)?);
-            let returned = law.returned(b_trial, D == 2, &tau)?.0;
             for k in 0..6 {
-                tau.0[k] = tau.0[k] + (viscous[k] - returned[k] * share);
+                tau.0[k] = tau.0[k] + (viscous[k] - returned.0[k] * share);
             }
         }
         if let Some(pore) = &self.pore {
