@@ -11,10 +11,11 @@ use std::sync::Mutex;
 /// Points of a chunk: enough that handing it out costs nothing, few enough that threads end together.
 pub(crate) const CHUNK: usize = 1024;
 
-/// Threads share `count` pieces of work, by their index. Not generic in the work: with a copy for every pass, most of
-/// what is compiled of a program would be the machinery of threads.
+/// Threads share `count` pieces of work, by their index, one at a time, so that they end together: columns of cells
+/// differ in what they hold. Not generic in the work: with a copy for every pass, most of what is compiled of a program
+/// would be the machinery of threads.
 pub(crate) fn share(count: usize, work: &(dyn Fn(usize) + Sync)) {
-    (0..count).into_par_iter().for_each(work);
+    (0..count).into_par_iter().with_max_len(1).for_each(work);
 }
 
 /// The same by chunks of so many points.

@@ -37,12 +37,11 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     let damping = Damping::of(model, nodes);
     let mut coupling = at.and_then(|_| Coupling::of(model, nodes, Raised::Along));
     // Threads work on a column each; what they found is added in the order of the patches.
-    let threads = rayon::current_num_threads();
-    for columns in shape.columns().chunks(threads) {
+    for columns in shape.columns().chunks(columns_at_a_time(shape)) {
         let state =
             Assembly { model, shape, nodes, points, volume, at, coupling: coupling.as_ref(), damping: &damping };
         let of_column = |column: &PatchColumn| column.patches.clone().map(|patch| state.part(patch)).collect();
-        let parts: Vec<Vec<PatchPart>> = columns.par_iter().map(of_column).collect();
+        let parts: Vec<Vec<PatchPart>> = columns.par_iter().with_max_len(1).map(of_column).collect();
         let patches = columns.iter().flat_map(|column| column.patches.clone());
         for (patch, part) in patches.zip(parts.into_iter().flatten()) {
             solver.add(shape.patches()[patch].first_node, &part.block);
@@ -55,6 +54,17 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
         coupling.assemble(halo, solver);
     }
     complete(problem, solver, Symmetry::Definite)
+}
+
+/// Bytes of blocks that are held before they are added: threads wait for each other once in so many.
+const BLOCKS: usize = 1 << 23;
+
+/// Columns whose blocks are held, one for every thread at least; one where there are no others.
+fn columns_at_a_time<const D: usize>(shape: &Shape<D>) -> usize {
+    let threads = rayon::current_num_threads();
+    let patches = shape.patches().len().div_ceil(shape.columns().len().max(1));
+    let bytes = patches * (shape.offsets().len() * D).pow(2) * size_of::<f64>();
+    if threads == 1 { 1 } else { threads.max(BLOCKS / bytes.max(1)) }
 }
 
 /// What one patch contributes.
