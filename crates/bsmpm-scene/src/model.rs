@@ -111,6 +111,7 @@ fn boundary<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f6
         supports: supports(case, t),
         outlets: outlets(case, t),
         strips: surfaces::strips::<K, D>(case, grid, (penalty(case), t)),
+        resting: case.footing.iter().map(|of| of.rests).chain(case.prescribed.iter().map(|of| of.rests)).collect(),
         rigid: surfaces::rigid(case, t),
         loads: surfaces::loads::<K, D>(case, grid, t),
         reach: reach(case),

@@ -62,8 +62,7 @@ struct Context {
     root: &'static Table,
     /// time is a pseudo-time without unit
     pseudo_time: bool,
-    /// axes of the geometry
-    dims: usize,
+    geometry: Geometry,
 }
 
 /// The whole file, whose table is `root`, as a record; what does not fit goes to `report`.
@@ -81,7 +80,7 @@ pub(crate) fn read(root: &'static Table, document: &DocumentTable, report: &mut 
         Value::Text(text) => Geometry::of(text),
         _ => None,
     });
-    Context { root, pseudo_time, dims: geometry.map_or(2, Geometry::dims) }.record(
+    Context { root, pseudo_time, geometry: geometry.unwrap_or(Geometry::PlaneStrain) }.record(
         root,
         document,
         Origin::Nowhere,
@@ -156,7 +155,7 @@ impl Context {
                 report.error(node.origin, path, format!("expected {kind}, found {}", node.show()));
                 None
             }
-            _ => value::read(kind, node, path, (self.pseudo_time, self.dims), report),
+            _ => value::read(kind, node, path, (self.pseudo_time, self.geometry), report),
         }
     }
 

@@ -23,7 +23,7 @@ pub(crate) use solid::{Section, SolidShape};
 pub(crate) use surface::Surface;
 pub(crate) use sweep::{Window, solid, sweep};
 
-pub(crate) use volume::bounds as solid_bounds;
+pub(crate) use volume::{bounds as solid_bounds, left as left_of_box};
 
 pub use volume::Volume;
 
@@ -84,7 +84,8 @@ pub(crate) struct CellTally {
 
 impl Region {
     /// Lower and upper corner of the smallest rectangle around it, m, in the case's coordinates; around the whole
-    /// shape where something is cut out. Of a shape in space the first two components.
+    /// shape where something is cut out, but for boxes that cut off a side. Of a shape in space the first two
+    /// components.
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         match self {
             Self::Box { lower, upper } => [*lower, *upper],

@@ -31,6 +31,8 @@ pub enum Dimension {
     Acceleration,
     /// N/m
     LineForce,
+    /// N
+    Force,
 }
 
 /// What one unit is worth.
@@ -46,7 +48,7 @@ use Worth::{Over, Radian, Ten, Times};
 /// s  of a day
 const DAY: f64 = 86_400.0;
 
-const UNITS: [(Dimension, &[(&str, Worth)]); 9] = [
+const UNITS: [(Dimension, &[(&str, Worth)]); 10] = [
     (
         Dimension::Length,
         &[("m", Ten(0)), ("cm", Ten(-2)), ("mm", Ten(-3)), ("um", Ten(-6)), ("nm", Ten(-9)), ("km", Ten(3))],
@@ -98,6 +100,7 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 9] = [
     ),
     (Dimension::Acceleration, &[("m/s2", Ten(0)), ("cm/s2", Ten(-2)), ("mm/s2", Ten(-3)), ("g", Times(9.806_65))]),
     (Dimension::LineForce, &[("N/m", Ten(0)), ("kN/m", Ten(3)), ("MN/m", Ten(6))]),
+    (Dimension::Force, &[("N", Ten(0)), ("kN", Ten(3)), ("MN", Ten(6))]),
 ];
 
 /// The dimensions that have units, in the order of messages.
@@ -132,7 +135,7 @@ impl Dimension {
             Self::Length | Self::Density | Self::Velocity => 1e9,
             Self::Seepage => 1e18,
             Self::Time | Self::Duration | Self::Acceleration => 1e12,
-            Self::Stress | Self::LineForce => 1e18,
+            Self::Stress | Self::LineForce | Self::Force => 1e18,
             Self::UnitWeight => 1e10,
             Self::Angle => 1e6,
         }
@@ -159,6 +162,7 @@ impl fmt::Display for Dimension {
             Self::Seepage => "a velocity of water",
             Self::Acceleration => "an acceleration",
             Self::LineForce => "a force per metre of thickness",
+            Self::Force => "a force",
         })
     }
 }
@@ -169,11 +173,19 @@ impl fmt::Display for Dimension {
 /// In words: no number, no unit, an unknown unit, a unit of another dimension, or a number that no double holds.
 pub fn parse(text: &str, expected: Dimension) -> Result<f64, String> {
     let (value, found) = parse_any(text, Some(expected))?;
-    if found == expected.units_of() {
+    // What is N per metre in plane strain was written so in every geometry.
+    if found == expected.units_of() || (found, expected) == (Dimension::LineForce, Dimension::Force) {
         return Ok(value);
     }
     let unit = split(text).map_or("", |(_, unit)| unit);
     Err(match expected {
+        Dimension::LineForce if found == Dimension::Force => {
+            let written = crate::report::shortened(text);
+            format!(
+                "\"{written}\" is a force; plane strain is 1 m thick and takes forces per metre ({})",
+                list(expected)
+            )
+        }
         Dimension::Number => format!("`{unit}` is a unit of {}, but this is a pure number", noun(found)),
         _ => format!("`{unit}` is a unit of {}; expected {expected} ({})", noun(found), list(expected)),
     })
@@ -202,12 +214,6 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
         units.iter().find(|(name, _)| *name == plain).map(|(_, worth)| (*dimension, *worth))
     };
     let Some((dimension, worth)) = UNITS.iter().find_map(known) else {
-        if meant == Some(Dimension::LineForce) && plain.ends_with('N') {
-            return Err(format!(
-                "\"{written}\" is a force; plane strain is 1 m thick and takes forces per metre{units}; in axisymmetry \
-                 the number is that of the whole ring, in a solid that of the whole force, in N, written \"N/m\" as well"
-            ));
-        }
         let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
         let near = hint(&plain, all.flat_map(|(_, units)| units.iter().map(|(name, _)| *name)));
         return Err(format!("\"{written}\": `{}` is no known unit{units}{near}", crate::report::shortened(unit)));
@@ -301,6 +307,8 @@ mod tests {
             ("21.9 °", Angle, 21.9),
             ("5 µm", Length, 5e-6),
             ("2.5 kN/m", LineForce, 2500.0),
+            ("2.5 kN/m", Force, 2500.0),
+            ("-2.5 MN", Force, -2.5e6),
             (".5 km", Length, 500.0),
             ("20 year", Time, 631_152_000.0),
             ("60 d", Time, 5_184_000.0),
@@ -350,7 +358,7 @@ mod tests {
             ("-", Length, "no number"),
             ("5 \u{202e}m", Length, "\\u{202e}"),
             ("5 kN", LineForce, "plane strain is 1 m thick and takes forces per metre (N/m, kN/m, MN/m)"),
-            ("5 kN", LineForce, "in a solid that of the whole force, in N, written \"N/m\" as well"),
+            ("5 kPa", Force, "expected a force (N, kN, MN)"),
             ("5 kPa", LineForce, "expected a force per metre of thickness (N/m"),
         ];
         for (text, dimension, says) in rows {

@@ -184,6 +184,22 @@ fn walls_thinner_than_points_lie_apart_are_warned_of() {
         case(METRES, &[&wall], 2).warnings.iter().any(|told| told.contains("where one point stands for all"))
     };
     assert!(warned(0.05) && !warned(1.0));
+    let warned = |thick: f64| {
+        let wall = format!("box = {{ lower = [2.13, 1], upper = [{}, 9] }}", 2.13 + thick);
+        case(METRES, &[&wall], 2).warnings.iter().any(|told| told.contains("along x it is"))
+    };
+    assert!(warned(0.45) && !warned(0.5));
+}
+
+#[test]
+fn a_ball_on_the_axis_is_what_a_box_leaves_of_a_circle() {
+    let circle = "circle = { center = [0, 9], radius = 4 }";
+    let half = format!("{circle}\nsubtract = [{{ box = {{ lower = [-5, 0], upper = [0, 20] }} }}]");
+    let case = case(METRES, &[&half], 3);
+    assert!((case.bodies[0].area() / (8.0 * std::f64::consts::PI) - 1.0).abs() < 1e-13);
+    verify(&case, 1e-12);
+    let error = &try_case(METRES, &[circle], 3).unwrap_err()[0].message;
+    assert!(error.contains("-4 is outside the grid") && error.contains("`subtract` a box"), "{error}");
 }
 
 #[test]

@@ -110,7 +110,8 @@ pub fn run(arguments: &ValidateArguments, mut told: impl FnMut(&str)) -> Result<
 /// What is asked for; a validation that judges nothing would pass whatever the program does.
 fn parts<'a>(matrix: &'a ValidationMatrix, arguments: &ValidateArguments) -> Result<Vec<MatrixPart<'a>>, Error> {
     let asked = |depth: Depth| !arguments.short || depth == Depth::Short;
-    let wanted = |study: &&MatrixStudy| arguments.only.as_ref().is_none_or(|part| study.title.contains(part));
+    let named = |study: &MatrixStudy, part: &str| study.title.to_lowercase().contains(&part.to_lowercase());
+    let wanted = |study: &&MatrixStudy| arguments.only.as_ref().is_none_or(|part| named(study, part));
     let part = |study: &'a MatrixStudy| {
         let runs: Vec<&MatrixRun> = study.run.iter().filter(|run| asked(study.depth_of(run))).collect();
         let is_run = |name: &&str| runs.iter().any(|run| run.name == **name);

@@ -84,6 +84,9 @@ pub struct Boundary<const D: usize> {
     pub outlets: Vec<(usize, bool)>,
     /// Rigid strips.
     pub strips: Vec<Strip<D>>,
+    /// Per strip, whether it lies on ground that stands without it, and has no part in the state of the start; empty:
+    /// all have.
+    pub resting: Vec<bool>,
     /// Tractions and point loads.
     pub loads: Vec<Load<D>>,
     /// Rigid bodies.

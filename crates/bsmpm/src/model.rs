@@ -198,12 +198,15 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         Self { regime: Regime::QuasiStatic, shaking: None, boundary, ..self.clone() }
     }
 
-    /// The model as at rest, with the pore pressures of the start: nothing flows before the first step.
+    /// The model as at rest, with the pore pressures of the start: nothing flows before the first step, and ground does
+    /// not hang from what lies on it.
     pub fn settling(&self) -> Self
     where
         K: Clone,
     {
         let mut model = self.at_rest();
+        let Boundary { strips, resting, .. } = &mut model.boundary;
+        strips.iter_mut().zip(resting).filter(|(_, resting)| **resting).for_each(|(strip, _)| strip.penalty = 0.0);
         model.water.iter_mut().flat_map(|water| &mut water.flow).for_each(|flow| flow.motion = Motion::Held);
         model
     }

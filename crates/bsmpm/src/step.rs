@@ -93,7 +93,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         points.grip = carried;
     }
     let account = draft.map(|draft| draft.close(model, points, &surface, halo));
-    let places = surface.anchors.places(&model.boundary, points.anchored(), halo);
+    let places = surface.anchors.places((&model.boundary, &model.grid), points.anchored(), halo);
     for (number, strip) in model.boundary.strips.iter().enumerate() {
         report.strips[number].left_behind = places.left_behind(number, strip, t + dt, &model.grid);
     }

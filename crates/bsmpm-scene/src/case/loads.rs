@@ -99,6 +99,8 @@ pub struct Footing {
     pub base: Base,
     /// friction, and whether material comes off, instead
     pub contact: Option<StripContact<3>>,
+    /// whether it lies on ground that stands without it, and has no part in the stress at the start
+    pub rests: bool,
 }
 
 /// Prescribed motion of what lies at a face of the grid or at a segment.
@@ -112,6 +114,8 @@ pub struct Prescribed {
     pub base: Base,
     /// friction, and whether material comes off, instead
     pub contact: Option<StripContact<3>>,
+    /// whether it lies on ground that stands without it, and has no part in the stress at the start
+    pub rests: bool,
 }
 
 /// Where a strip or a prescribed motion acts at the start.

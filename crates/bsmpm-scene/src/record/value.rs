@@ -7,6 +7,7 @@ use crate::nearest::hint;
 use crate::report::{Report, shortened};
 use crate::schema::{Kind, Range, Words};
 use crate::unit::{self, Dimension};
+use crate::words::Geometry;
 
 /// Rows of a list that are wrong one after the other, behind which the rest is not looked at.
 const WRONG_ROWS: usize = 3;
@@ -23,11 +24,12 @@ pub(super) fn read(
     kind: &Kind,
     node: &Node,
     path: &str,
-    (pseudo_time, dims): (bool, usize),
+    (pseudo_time, geometry): (bool, Geometry),
     report: &mut Report<'_>,
 ) -> Option<Datum> {
     let name = path.rsplit('.').next().unwrap_or(path);
-    let mut reader = ValueReader { kind, path, name, pseudo_time, report };
+    let dims = geometry.dims();
+    let mut reader = ValueReader { kind, path, name, pseudo_time, geometry, report };
     match kind {
         Kind::Quantity(dimension, range) => reader.quantity(node, *dimension, range).map(Datum::Number),
         Kind::Profile(dimension, range, _) => reader.quantity(node, *dimension, range).map(Datum::Number),
@@ -95,6 +97,7 @@ struct ValueReader<'a, 'r> {
     path: &'a str,
     name: &'a str,
     pseudo_time: bool,
+    geometry: Geometry,
     report: &'a mut Report<'r>,
 }
 
@@ -121,7 +124,7 @@ impl ValueReader<'_, '_> {
 
     /// What a solid wants three numbers of.
     fn not_of_three<T>(&mut self, node: &Node, dimension: Dimension) -> Option<T> {
-        let unit = if dimension == Dimension::LineForce { ", in N, written \"N/m\" as well" } else { "" };
+        let unit = if dimension == Dimension::LineForce { ", in N" } else { "" };
         let message = format!(
             "expected {}, found {}: in a solid it has three components, [x, y, z]{unit}",
             self.kind,
@@ -166,6 +169,7 @@ impl ValueReader<'_, '_> {
                 "found {}; quasi-static time has no unit: a number, m per unit of pseudo-time",
                 node.show()
             )),
+            Dimension::LineForce if self.geometry != Geometry::PlaneStrain => unit::parse(text, Dimension::Force),
             _ => unit::parse(text, dimension),
         }
     }

@@ -274,14 +274,21 @@ impl Filling {
 /// Lower and upper corner of the cuboid around a shape of which cuboids may cut off sides as a whole: a quarter of a
 /// cylinder between planes of symmetry.
 pub(crate) fn bounds(whole: &SolidShape, cut: &[SolidShape]) -> [[f64; 3]; 2] {
-    let [mut lower, mut upper] = whole.bounds();
+    let boxes = cut.iter().filter_map(|shape| match shape {
+        SolidShape::Box { corners } => Some(*corners),
+        _ => None,
+    });
+    left(whole.bounds(), &boxes.collect::<Vec<_>>())
+}
+
+/// What is left of a box by its lower and upper corner where others cut off sides as a whole.
+pub(crate) fn left<const D: usize>([mut lower, mut upper]: [[f64; D]; 2], cut: &[[[f64; D]; 2]]) -> [[f64; D]; 2] {
     for _ in cut {
-        for shape in cut {
-            let SolidShape::Box { corners: [from, to] } = shape else { continue };
+        for [from, to] in cut {
             let covers =
-                |axis: usize, lower: &[f64; 3], upper: &[f64; 3]| from[axis] <= lower[axis] && upper[axis] <= to[axis];
-            for axis in 0..3 {
-                if (0..3).any(|other| other != axis && !covers(other, &lower, &upper)) {
+                |axis: usize, lower: &[f64; D], upper: &[f64; D]| from[axis] <= lower[axis] && upper[axis] <= to[axis];
+            for axis in 0..D {
+                if (0..D).any(|other| other != axis && !covers(other, &lower, &upper)) {
                     continue;
                 }
                 if from[axis] <= lower[axis] && lower[axis] < to[axis] {

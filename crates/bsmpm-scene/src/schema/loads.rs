@@ -207,8 +207,7 @@ pub(super) static POINT_LOAD: Table = Table {
             "force",
             Vector(In::LineForce, Range::ANY),
             Optional,
-            "along the axes, per metre of thickness; in axisymmetry of the whole ring, and of a solid, in N, written \"N/m\" \
-             as well",
+            "along the axes, per metre of thickness; in axisymmetry of the whole ring, and of a solid, in N",
         ),
         key("force_path", Course(In::LineForce), Optional, FORCES),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),

@@ -14,6 +14,8 @@ use bsmpm::model::Regime;
 /// Part of a body in cells of one point each above which it is warned of: a face just beyond a grid line has a fifth, a
 /// tube with a wall of four fifths of the points' distance too, of a fifth all.
 const ALONE: f64 = 0.3;
+/// Parts of the distance of points by which a box may be thinner: rounding.
+const ROUNDING: f64 = 1e-9;
 /// Bodies at most; every pair is tried for overlap.
 const MOST: usize = 10_000;
 /// Pairs of edges that are tried for overlap at most.
@@ -106,7 +108,32 @@ fn read(
             1e2 * alone
         ));
     }
+    if let Some((axis, part)) = grid.and_then(|grid| thinnest(&body, grid)).filter(|_| body.points_per_cell > 1) {
+        report.warn(format!(
+            "{}: along {} it is {part:.2} of a cell thick, thinner than points lie apart elsewhere: how it bends, and strains \
+             beside it that are not its own, cannot be trusted; take smaller cells there",
+            record.path,
+            ["x", "y", "z"][axis]
+        ));
+    }
     Some(body)
+}
+
+/// The axis along which a box is thinner than points lie apart in a cell, and the part of a cell that it has there: its
+/// own points stand as close as it is thin, so that none is alone.
+fn thinnest(body: &Body, grid: &GridSpec) -> Option<(usize, f64)> {
+    let [lower, upper] = match &body.region {
+        Region::Box { lower, upper } => [*lower, *upper].map(|[x, y]| [x, y, 0.0]),
+        Region::Solid(volume) if volume.is_box() => volume.bounds(),
+        Region::Solid(_) | Region::Outline(_) => return None,
+    };
+    let part = |axis: usize| {
+        let along = &grid.axes[axis];
+        let cell = along.first_cell(|cell| along.lower() + along.breakpoint(cell + 1) > lower[axis]);
+        (axis, (upper[axis] - lower[axis]) / along.cell(cell.min(along.cells() - 1)))
+    };
+    let least = (0..grid.dims()).map(part).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (least.1 < (1.0 - ROUNDING) / body.points_per_cell as f64).then_some(least)
 }
 
 fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usize> {

@@ -100,11 +100,16 @@ pub(super) fn at_volume(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool 
 /// are thin, then as far as half a spacing of points.
 const BESIDE: [f64; 4] = [0.25, 0.025, 0.0025, 0.51];
 
+/// Places along a surface's normal and against it at which bodies are, as near to it as there are any.
+pub(super) fn beside(grid: &GridSpec, count: impl Fn(f64) -> usize) -> Option<[usize; 2]> {
+    let counts = |part: &f64| [1.0, -1.0].map(|side| count(side * part * grid.shortest()));
+    BESIDE.iter().map(counts).find(|counts| *counts != [0; 2])
+}
+
 /// On which side of a surface bodies lie: 1 along its normal, -1 against it; `None` on both, or on none. `count` has
 /// the places so many metres along its normal at which there are any.
 pub(super) fn side_of_bodies(grid: &GridSpec, count: impl Fn(f64) -> usize) -> Option<f64> {
-    let counts = |part: &f64| [1.0, -1.0].map(|side| count(side * part * grid.shortest()));
-    let [along, against] = BESIDE.iter().map(counts).find(|counts| *counts != [0; 2])?;
+    let [along, against] = beside(grid, count)?;
     let is_one = along.abs_diff(against) * 2 >= along.max(against);
     is_one.then_some(if along > against { 1.0 } else { -1.0 })
 }

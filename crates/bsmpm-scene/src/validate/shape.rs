@@ -66,13 +66,18 @@ pub(super) fn region(
         return None;
     }
     let grid = grid?;
-    inside(&whole, body, grid, report)?;
+    let boxes = cut.iter().filter_map(|shape| match shape {
+        BodyShape::Box { lower, upper } => Some([*lower, *upper]),
+        BodyShape::Polygon(_) | BodyShape::Circle { .. } => None,
+    });
+    let bounds = region::left_of_box(whole.bounds(), &boxes.collect::<Vec<_>>());
+    inside((&whole, bounds), body, grid, report)?;
     if let (BodyShape::Box { lower, upper }, true) = (&whole, cut.is_empty()) {
         return Some(Region::Box { lower: *lower, upper: *upper });
     }
     let shapes = std::iter::once(&whole).chain(&cut).enumerate();
     let edges = shapes.flat_map(|(number, shape)| shape.edges(grid.corner(), number)).collect();
-    match Outline::new(edges, 1 + cut.len(), (whole.bounds(), whole.area()), (grid, geometry, points_per_cell?)) {
+    match Outline::new(edges, 1 + cut.len(), (bounds, whole.area()), (grid, geometry, points_per_cell?)) {
         Ok(outline) => Some(Region::Outline(outline)),
         Err(message) => {
             body.error(key(body), message, report);
@@ -146,14 +151,19 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     None
 }
 
-/// Errors about what lies outside the grid.
-fn inside(shape: &BodyShape, body: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<()> {
-    let [lower, upper] = shape.bounds();
+/// Errors about what lies outside the grid: of a shape with what is left of its bounds.
+fn inside(
+    (shape, [lower, upper]): (&BodyShape, [[f64; 2]; 2]),
+    body: &Record,
+    grid: &GridSpec,
+    report: &mut Report<'_>,
+) -> Option<()> {
     if place::beyond(grid, lower).is_none() && place::beyond(grid, upper).is_none() {
         return Some(());
     }
     match shape {
         BodyShape::Box { .. } => {
+            let [lower, upper] = shape.bounds();
             for (key, corner) in [("lower", lower), ("upper", upper)] {
                 let message = place::beyond(grid, corner);
                 message.into_iter().for_each(|message| {
@@ -172,7 +182,7 @@ fn inside(shape: &BodyShape, body: &Record, grid: &GridSpec, report: &mut Report
         }
         BodyShape::Circle { .. } => {
             let message = place::beyond(grid, lower).or(place::beyond(grid, upper)).unwrap_or_default();
-            body.error("circle", message, report);
+            body.error("circle", message + "; `subtract` a box from what lies beyond", report);
         }
     }
     None

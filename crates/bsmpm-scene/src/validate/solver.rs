@@ -189,10 +189,24 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     }
     // Near failure the preconditioner alone may give up before the ground does, and whether it does is the answer.
     let fails = case.strength_reduction.is_some();
-    if dims < 3 || fails || solver.gives("linear") || case.flow.is_some() || condenses || active <= FEW_IN_SPACE {
+    if dims < 3 || solver.gives("linear") {
         return;
     }
     let so_many = format!("up to {active} unknowns in space");
+    let by_factor = match () {
+        () if active <= FEW_IN_SPACE => Some(format!(", {FEW_IN_SPACE} at most: a factor costs least")),
+        () if fails => {
+            Some(": near failure a preconditioner in place of solutions may give up before the ground does".into())
+        }
+        () if case.flow.is_some() || condenses => Some(": what else applies was not shown to be right here".into()),
+        () => None,
+    };
+    if let Some(reason) = by_factor {
+        if case.solver.linear.factor.is_some() {
+            chosen(LinearSolver::Direct, so_many + &reason, report);
+        }
+        return;
+    }
     if case.is_nearly_incompressible() {
         let what = "of nearly incompressible material, or of soil that flows at rest with poisson above 0.4";
         if case.solver.linear.factor.is_some() && active <= FEW_INCOMPRESSIBLE {

@@ -12,7 +12,7 @@ const SECTION: &str = "rectangle = { lower = [0.0, 0.0, 0.5], upper = [1.5, 3.0,
 
 const BALL: &str = "sphere = { center = [3.5, 0.5, 2.0], radius = 0.25 }";
 
-const FORCE: &str = "force = [\"1 N/m\", 0.0, 0.0]";
+const FORCE: &str = "force = [\"1 N\", 0.0, 0.0]";
 
 const BASE: &str = "base = [[2, 0, 1], [3, 0, 1], [2, 3, 1], [3, 3, 1]]";
 
@@ -163,13 +163,8 @@ pub const SOLID: &[Row] = &[
     row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "solid: of three"),
     row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 1.9]", "point_load.0.at", "no body is at [3.9, 0.1, 1.9]"),
     row(FORCE, "force = \"-10 N\"", "point_load.0.force", "\"-10 N\": in a solid it has three components"),
-    row(
-        FORCE,
-        "force = [0.0, \"-10 N/m\"]",
-        "point_load.0.force",
-        "three components, [x, y, z], in N, written \"N/m\"",
-    ),
-    row(FORCE, "force = [0.0, 0.0, \"-10 N\"]", "point_load.0.force", "in a solid that of the whole force, in N"),
+    row(FORCE, "force = [0.0, \"-10 N/m\"]", "point_load.0.force", "three components, [x, y, z], in N"),
+    row(FORCE, "force = [0.0, 0.0, \"-10 kPa\"]", "point_load.0.force", "expected a force (N, kN, MN)"),
     row(PLATE, "from = [0, 1]\nto = [1, 1]", "footing.from", "a solid has plates"),
     row(PLATE, "rectangle = { lower = [0.5, 2, 1], upper = [1.5, 3, 1.2] }", "footing.rectangle", "no rectangle"),
     row(

@@ -32,6 +32,20 @@ fn strips_loads_and_initial_stress_arrive() {
     assert_eq!(valid(&own, &k0).initial, Some(Initial::AtRest(vec![0.4, 0.7, 0.0, 0.6])));
 }
 
+/// On the top of a block, beside it, and beneath what lies over it.
+#[test]
+fn what_lies_on_the_ground_has_no_part_in_the_stress_at_the_start() {
+    let case = valid(FULL, &["prescribed.1.components={ friction = 0.3, lifts = true }"]);
+    let rest: Vec<bool> = case.prescribed.iter().map(|of| of.rests).collect();
+    assert!(case.footing.is_some_and(|footing| footing.rests) && rest == [false, true], "{rest:?}");
+    let beside = ["footing.from=[2, 2]", "footing.to=[2, 2.5]", "footing.displacement=[-0.1, 0]"];
+    assert!(!valid(FULL, &beside).footing.unwrap().rests);
+    let above = ["footing.from=[1, 2]", "footing.to=[2, 2]"];
+    assert!(!valid(FULL, &above).footing.unwrap().rests);
+    let hangs = doubts(FULL, &["initial.equilibrium=plastic"]);
+    assert!(hangs.iter().any(|told| told.contains("prescribed.1: it lies on the ground")), "{hangs:?}");
+}
+
 #[test]
 fn strips_hold_and_load_a_quasi_static_body() {
     let free = STATIC.replace("bottom = \"fixed\"\n", "");

@@ -24,7 +24,7 @@ const FLAT: f64 = 1e-3;
 /// The sun, towards it: from the upper left, steeply.
 const LIGHT: [f64; 3] = [-0.5, 0.5, 0.707];
 /// Share of the light that comes from everywhere.
-const AMBIENT: f64 = 0.35;
+const AMBIENT: f64 = 0.7;
 
 /// The tops of the material of the highest points of a frame, one in each part of a cell.
 struct Heights {

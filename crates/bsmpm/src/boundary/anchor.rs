@@ -4,13 +4,16 @@
 //! Points that moved with the nodes instead would lag behind where rows of cells empty: on a column compressed by 30 %
 //! a load would come to lie .013 m of .70 m below the surface. And it tells where a strip has let go of its material.
 
-use super::Boundary;
 use super::strip::{Strip, reduce};
 use super::surface::{Anchors, SurfacePoint};
+use super::{Boundary, Support};
 use crate::grid::Grid;
 use crate::parallel::Halo;
 use crate::points::Packed;
 use crate::tensor::{Tensor, Vector};
+
+/// Parts of the grid's length within which a point is on a face.
+const ON: f64 = 1e-9;
 
 /// What surfaces are anchored to: the points of this rank.
 #[derive(Clone, Copy)]
@@ -67,7 +70,7 @@ pub struct AnchorPlaces<const D: usize> {
     /// per strip and point of it: as far from the anchor as at the start, without what the material between has
     /// stretched
     pub strips: Vec<Vec<Vector<D>>>,
-    /// per load and point of it: on the material
+    /// per load and point of it: on the material, and on the face of the grid that it began on
     pub loads: Vec<Vec<Vector<D>>>,
 }
 
@@ -146,7 +149,7 @@ impl Anchors {
     /// Where the material is now. One reduction, if there are surface points at all.
     pub fn places<const D: usize>(
         &self,
-        boundary: &Boundary<D>,
+        (boundary, grid): (&Boundary<D>, &Grid<D>),
         points: Anchored<'_, D>,
         halo: &dyn Halo,
     ) -> AnchorPlaces<D> {
@@ -155,7 +158,10 @@ impl Anchors {
         let mut found = vec![vec![Vector::zeros(); starts.len()]];
         if !starts.is_empty() {
             points.visit(self.strips.iter().chain(&self.loads).flatten(), |p, at| {
-                found[0][at] = if at < of_strips { points.ahead(p, &starts[at]) } else { points.along(p, &starts[at]) };
+                found[0][at] = match at < of_strips {
+                    true => points.ahead(p, &starts[at]),
+                    false => within((boundary, grid), &starts[at], points.along(p, &starts[at])),
+                };
             });
             reduce(&mut found, halo);
         }
@@ -225,6 +231,25 @@ pub(crate) fn turned<const D: usize>(F: &Tensor, area: &Vector<D>) -> Vector<D> 
 fn cofactor(F: &Tensor) -> Tensor {
     let at = |i: usize, j: usize| F[(i % 3, j % 3)];
     Tensor::from_fn(|i, j| at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1))
+}
+
+/// A place that was at `start`, not beyond the faces that hold or stop material, and on those that it began on if no
+/// material leaves them: what the material at it has stretched would take it off.
+fn within<const D: usize>(
+    (boundary, grid): (&Boundary<D>, &Grid<D>),
+    start: &Vector<D>,
+    mut place: Vector<D>,
+) -> Vector<D> {
+    let closed = boundary.closed();
+    for Support { axis, upper, .. } in &boundary.supports {
+        let length = grid.axes()[*axis].length();
+        let (face, outward) = if *upper { (length, 1.0) } else { (0.0, -1.0) };
+        let began_on_it = (start[*axis] - face).abs() <= ON * length;
+        if began_on_it && closed[*axis][usize::from(*upper)] || outward * (place[*axis] - face) > 0.0 {
+            place[*axis] = face;
+        }
+    }
+    place
 }
 
 /// Places of all surface points at the start, m: those of strips, then those of loads.

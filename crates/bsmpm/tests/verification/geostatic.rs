@@ -3,7 +3,7 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Load, surface};
+use bsmpm::boundary::{Load, Path, Strip, surface};
 use bsmpm::error::StepError;
 use bsmpm::initial;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
@@ -130,10 +130,15 @@ fn ground_beyond_yield_settles_at_active_pressure_where_it_is() {
     settled::<Solid, 3>(Stabilisation::None);
 }
 
+/// Beneath a footing, too, which it does not hang from.
 #[test]
 fn level_ground_keeps_k0_and_loses_the_quadrature_of_its_weight() {
     let law = MohrCoulomb::new(Elastic { young: 1e4, poisson: 0.3 }, 0.5, 0.0, 0.0);
     let mut scene = ground::<PlaneStrain, 2>(Material::MohrCoulomb(law));
+    let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 4.0].into(), &[1.0, 4.0].into(), 4);
+    let path = Path { rows: vec![(1.0, [0.0, -0.1].into())] };
+    scene = scene.strip(Strip { points, normal: None, contact: None, path, penalty: 1e8 });
+    scene.model.boundary.resting = vec![true];
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
     initial::set_spread(&scene.model, &mut scene.points, |_| 0.7, (&halo, &mut solver)).expect("a state");
@@ -142,7 +147,7 @@ fn level_ground_keeps_k0_and_loses_the_quadrature_of_its_weight() {
     let stress = |p: usize| scene.points.sigma.at(p).0;
     let off = (0..scene.points.len()).map(|p| (stress(p)[0] / stress(p)[1] - 0.7).abs()).fold(0.0, f64::max);
     assert!(found.force <= 1e-11 && found.yielding == 0 && settling.rounds == 0, "{found:?} {settling:?}");
-    assert!(off <= 1e-14, "{off:e}");
+    assert!(off <= 1e-14 && found.strips[0].force == [0.0; 2], "{off:e} {:?}", found.strips);
 }
 
 #[test]

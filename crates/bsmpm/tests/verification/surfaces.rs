@@ -2,10 +2,10 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::background::{Background, Extent, Kind};
-use bsmpm::boundary::{Load, Path, Strip, SurfacePoint, surface};
+use bsmpm::boundary::{Load, Path, Strip, Support, SurfacePoint, surface};
 use bsmpm::control::Accepted;
 use bsmpm::error::StepError;
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
@@ -164,6 +164,28 @@ fn a_point_load_is_carried_by_the_supports_and_its_work_is_positive() {
         assert!((sum[0] + 3.0).abs() <= 1e-8 && (sum[1] - 20.0).abs() <= 1e-8);
         assert!(moved[0] > 0.0 && moved[1] < 0.0);
     });
+}
+
+/// What the material beneath it stretches would take it off, or through the face.
+#[test]
+fn a_point_load_beside_a_plane_of_symmetry_an_axis_or_a_corner_stays_there() {
+    fn settle<K: Kinematics<D>, const D: usize>(from: f64) {
+        let mut scene = Scene::<K, D>::new([0; D].map(|_| axis(0.25, 4, 2)), hencky(1000.0, 0.3), Regime::QuasiStatic)
+            .body([0; D].map(|_| 0..2), 2, 1.0, |x| x * 0.0);
+        scene = (0..D).fold(scene, |scene, axis| scene.support(Support::roller(axis, false)));
+        let (mut start, mut push) = (Vector::<D>::from_element(from), Vector::<D>::zeros());
+        (start[D - 1], push[D - 1]) = (0.5, -2.0);
+        scene = scene.load(Load::dead(vec![SurfacePoint::at(start, 1.0)], push, 1.0));
+        scene.march(0.25, 1.0, |points, _| {
+            let at = points.surface.position[0][0];
+            assert!((0..D - 1).all(|axis| (0.0..=2.0 * from).contains(&at[axis])) && at[D - 1] < 0.5, "{at}");
+        });
+    }
+    for from in [0.0, 1e-6] {
+        settle::<PlaneStrain, 2>(from);
+        settle::<Axisymmetric, 2>(from);
+        settle::<Solid, 3>(from);
+    }
 }
 
 #[test]
