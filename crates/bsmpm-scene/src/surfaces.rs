@@ -212,6 +212,12 @@ pub fn name_of_drain(case: &Case, surface: usize) -> String {
     }
 }
 
+/// What the case calls a drained face of the grid, by the number that the physics has.
+pub fn name_of_drained_face(case: &Case, face: usize) -> String {
+    let number = drain_places(case).iter().position(|place| *place == DrainPlace::Face(face));
+    format!("drain.{}", number.unwrap_or_default())
+}
+
 /// What flow is to the soils and to surfaces once the stages until the time `t` have begun, if water flows.
 pub fn flow<K: Kinematics<D>, const D: usize>(
     case: &Case,

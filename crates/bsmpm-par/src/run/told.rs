@@ -14,6 +14,10 @@ use bsmpm_scene::{Face, Support};
 const FASTEST: f64 = 0.5;
 /// Cells that points may be in a rigid body.
 const DEEPEST: f64 = 0.05;
+/// Part of the ground at a drained face that may have moved off it.
+const LEFT: f64 = 0.1;
+/// Cells between neighbours on a drained surface above which it is torn.
+const TORN: f64 = 1.0;
 
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Misspelt options of PETSc would do nothing in silence.
@@ -149,6 +153,45 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                      surface heaves, a grid that goes on a cell beyond it"
                 ));
             }
+        }
+        for number in (0..points.len()).filter(|&number| water.torn[number] > TORN) {
+            let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
+            if self.told_strips.insert(of_strips + points.len() + number) {
+                self.warn(format!(
+                    "{name}: at t = {t} points of it that were neighbours at the start are {:.1} cells apart: the ground has come \
+                     apart or is stretched between them, and its new surface there is closed, so that no water seeps out of it or \
+                     goes in; hold the result against that of drainage = \"given\", the other bound",
+                    water.torn[number]
+                ));
+            }
+        }
+        self.tell_drained_faces(accepted, of_strips + 2 * points.len());
+    }
+
+    /// Ground that goes away from a drained face of the grid leaves its drain there. `known`: of the first.
+    fn tell_drained_faces(&mut self, accepted: &Accepted, known: usize) {
+        let (Some(water), t) = (&accepted.report.water, accepted.t) else { return };
+        let flow = self.simulation.model.water.as_ref().and_then(|water| water.flow.as_ref());
+        let acts: Vec<bool> = flow.map_or_else(Vec::new, |flow| flow.faces.iter().map(|face| face.acts).collect());
+        for (number, face) in water.faces.iter().enumerate().filter(|(number, _)| acts[*number]) {
+            let (sealed, off) = (face.held == 0, face.off as f64 > LEFT * face.near as f64);
+            if !(sealed || off) || !self.told_strips.insert(known + 2 * number + usize::from(sealed)) {
+                continue;
+            }
+            let name = bsmpm_scene::surfaces::name_of_drained_face(&self.case, number);
+            let share = 100.0 * face.off as f64 / face.near.max(1) as f64;
+            let what = if sealed {
+                "no ground is left at its face of the grid: it is sealed, and no water crosses it any more".into()
+            } else {
+                format!(
+                    "{share:.0} % of the ground at its face of the grid have moved off by more than a fifth of a cell: too little \
+                     water goes through it from there on, and none after a cell"
+                )
+            };
+            self.warn(format!(
+                "{name}: at t = {t} {what}; a face does not go with the ground: name the surface of the body instead, by \
+                 surface = true or from and to (solid: a rectangle or disc)"
+            ));
         }
     }
 

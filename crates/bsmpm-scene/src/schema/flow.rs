@@ -17,7 +17,8 @@ pub(super) static DRAIN: Table = Table {
             "face",
             Choice(Side::WORDS),
             Optional,
-            "a face of the grid, at which bodies lie; of a solid this, a rectangle or a disc",
+            "a face of the grid, at which bodies lie, which does not go with the ground: where that settles from it, or \
+             goes away, name the body's surface; of a solid this, a rectangle or a disc",
         ),
         key("from", PLACE, Optional, "one end of a segment of a body's surface at the start"),
         key("to", PLACE, Optional, "the other end"),

@@ -38,6 +38,8 @@ pub struct Drainage {
     offsets: Vec<usize>,
     of: [usize; 2], // drains, inflows
     outlets: Vec<WaterCrossing>,
+    /// cells between points of every surface that were neighbours at the start: the most, 0 of those that do not act
+    pub torn: Vec<f64>,
 }
 
 /// A surface point that water goes through: a sink, or a source.
@@ -88,7 +90,7 @@ impl Drainage {
         let (grid, offsets) = (&model.grid, model.grid.lowered_offsets());
         let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo).water;
         let mut places = places(flow, points, &anchors, halo).into_iter();
-        let mut outlets = Vec::new();
+        let (mut outlets, mut torn) = (Vec::new(), vec![0.0; of[0] + of[1]]);
         for ((surface, (starts, _)), acts) in flow.surfaces().enumerate().zip(flow.acting()) {
             let here: Vec<SurfacePlace<D>> = places.by_ref().take(starts.len()).collect();
             if !acts {
@@ -98,6 +100,7 @@ impl Drainage {
             if tight > 0 {
                 return Err(StepError::Undrained { drain: surface, points: tight });
             }
+            torn[surface] = cells_apart(grid, starts, &here);
             for (place, SurfacePoint { area, .. }) in here.iter().zip(starts) {
                 let attachment = Attachment::lowered_at(grid, &offsets, &counts, &place.x);
                 let Some(attachment) = attachment else { continue };
@@ -124,7 +127,7 @@ impl Drainage {
                 });
             }
         }
-        Ok(Self { offsets, of, outlets })
+        Ok(Self { offsets, of, outlets, torn })
     }
 
     /// Adds what leaves the ground in the step under the excess pressures `p` (Pa, nodal, one number a node) to the
@@ -202,6 +205,20 @@ impl<const D: usize> SurfacePlace<D> {
         let along = |axis: usize| self.normal[axis].powi(2) * self.permeability[axis] / edge(axis);
         (0..D).map(along).sum::<f64>() / self.normal.norm_squared()
     }
+}
+
+/// The most cells that are now between points of a surface of which the ends met at the start, in the order of the
+/// surface: what the ground has laid bare between them is closed.
+fn cells_apart<const D: usize>(grid: &Grid<D>, starts: &[SurfacePoint<D>], places: &[SurfacePlace<D>]) -> f64 {
+    let meets = |pair: &[SurfacePoint<D>]| (pair[0].x - pair[1].x).norm() < grid.smallest_edge();
+    let pairs = starts.windows(2).zip(places.windows(2)).filter(|(starts, _)| meets(starts));
+    let apart = |places: &[SurfacePlace<D>]| {
+        let edges = grid
+            .locate(&places[0].x)
+            .map_or_else(|| Vector::from_element(grid.smallest_edge()), |cell| grid.cell_box(&cell).1);
+        (places[1].x - places[0].x).component_div(&edges).norm()
+    };
+    pairs.map(|(_, places)| apart(places)).fold(0.0, f64::max)
 }
 
 /// Those of all surface points, now. One reduction.

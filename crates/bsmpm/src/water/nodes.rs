@@ -57,6 +57,8 @@ pub struct Wet<const D: usize> {
 pub struct Pores<const D: usize> {
     /// those functions at the points
     pub shape: Shape<D>,
+    /// per node: points see it
+    pub seen: Vec<bool>,
     /// per node: an unknown
     pub free: Vec<bool>,
     /// Pa  excess pressure at t + dt where it is given
@@ -140,6 +142,7 @@ impl<const D: usize> Pores<D> {
         let unknowns = unknowns[0] as usize;
         Ok(Some(Self {
             shape,
+            seen,
             free,
             prescribed,
             guess,
