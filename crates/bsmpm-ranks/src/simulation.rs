@@ -254,7 +254,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     fn settle_surfaces(&mut self, idle: &Idle) {
         let (boundary, anchored) = (&self.model.boundary, self.points.anchored());
         let anchors = self.points.surface.anchors.renewed(&self.model.surfaces(), idle, anchored, &*self.halo);
-        let places = anchors.places(boundary, anchored, &*self.halo);
+        let places = anchors.places((boundary, &self.model.grid), anchored, &*self.halo);
         let pressure = follower::now::<K, D>(&boundary.loads, (&self.model.grid, &anchors), anchored, &*self.halo);
         let surface = &mut self.points.surface;
         surface.anchors = anchors;
