@@ -153,6 +153,30 @@ fn a_drain_that_leaves_the_grid_is_told_of() {
     assert!(further.is_empty(), "{further:?}");
 }
 
+/// A face does not go with the ground: it is told as soon as a part of a cell is between them, and when it is sealed;
+/// the surface of the body goes with it.
+#[test]
+fn ground_that_leaves_a_drained_face_is_told_of() {
+    let case = shipped("validation/large_consolidation.toml");
+    let scratch = Scratch::new();
+    let run = |name: &str, sets: &[&str]| {
+        let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", *set]).collect();
+        let case = case.to_str().expect("UTF-8");
+        scratch.direct(&[&[case, "-q", "-o", name, "--set", "output={ }"][..], &sets].concat()).expect(0);
+        let told = manifest(&scratch.path(name)).warnings;
+        told.into_iter().filter(|warning| warning.starts_with("drain.0: at t = ")).collect::<Vec<_>>()
+    };
+    let face = "drain=[{ name = \"top\", face = \"top\" }]";
+    let load = "traction.0.stress=[0, -1e5]";
+    let short = "analysis={ type = \"consolidation\", end = \"5e5 s\", dt = \"500 s\", growth = 1.2 }";
+    let told = run("face", &[face, load, short]);
+    assert!(told.len() == 2 && told[0].contains("moved off") && told[1].contains("is sealed"), "{told:?}");
+    let light = run("light", &[face, "traction.0.stress=[0, -8e3]", short]);
+    assert!(light.is_empty(), "{light:?}");
+    let surface = run("surface", &[load, short]);
+    assert!(surface.is_empty(), "{surface:?}");
+}
+
 /// Under F-bar permeability and closure go by J-bar: by the points' own J pores at the drain close at T = .19.
 #[test]
 fn a_load_of_half_the_stiffness_leaves_pores_open_under_f_bar() {

@@ -18,11 +18,13 @@ use crate::water::residual::Flowing;
 /// Part of a cell by which ground is off a drained face when it is told of: a column that had settled by .1 of a cell
 /// was 1 % short of its settlement, by .3 of a cell 4 %, and by one it settled no more.
 const OFF: f64 = 0.2;
+/// Cells from the face within which ground is at it: no row of points of a cell, (k + 1/2)/n, is just there.
+const NEAR: f64 = 0.6;
 
 /// The ground at a drained face of the grid, which does not go with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FaceReport {
-    /// points that lay within half a cell of the face at the start
+    /// points that lay within .6 of a cell of the face at the start
     pub near: usize,
     /// those of them that have moved off it by more than a fifth of a cell
     pub off: usize,
@@ -98,7 +100,7 @@ fn at_faces<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, fl
             let x = points.x[p][face.axis];
             [depth(x - points.u[p][face.axis]), depth(x)]
         });
-        let near = depths.filter(|[before, _]| *before < 0.5 * edge);
+        let near = depths.filter(|[before, _]| *before < NEAR * edge);
         let (mut all, mut off, mut held) = (Exact::ZERO, Exact::ZERO, Exact::ZERO);
         for [before, now] in near {
             all.add(1.0);

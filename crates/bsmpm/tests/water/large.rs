@@ -11,7 +11,7 @@ use bsmpm::water::observed::PoreWater;
 /// N/m3  of water whose own weight does nothing to a column of the stiffness M
 const LIGHT: f64 = 1.0;
 
-const T: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
+const T: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
 /// Cells across: of one cell the points next to the surface go sideways under a load of half the stiffness, one side of
 /// the cell's strains for the other's, of which F-bar's average sees nothing. From first steps of 1e-4 on such columns
@@ -29,7 +29,7 @@ fn settling(cells: usize, load: f64, law: PermeabilityLaw) -> Plane {
 
 /// Settlement of the surface over the height, and excess pressure at the base over M, of the table's times.
 fn consolidated(mut scene: Plane, (first, steps): (f64, usize)) -> Vec<[f64; 2]> {
-    let mut times = geometric(first, 1.0, steps);
+    let mut times = geometric(first, 2.0, steps);
     times.extend(T);
     times.sort_by(f64::total_cmp);
     times.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
@@ -76,9 +76,25 @@ fn compare(name: &str, once: f64, found: &[[f64; 2]], expected: &[[f64; 2]]) -> 
 #[test]
 fn a_load_of_half_the_stiffness_settles_as_the_solution_by_lines() {
     let load = 0.5 * M;
-    let of = |law| consolidated(settling(20, load, law), (5e-3, 120));
-    let constant = [[0.11619, 0.49616], [0.16429, 0.4396], [0.22932, 0.25553], [0.29163, 0.02082], [0.29649, 0.00018]];
-    let kozeny = [[0.06991, 0.49917], [0.09887, 0.48623], [0.1397, 0.4334], [0.21296, 0.27687], [0.26489, 0.12175]];
+    let of = |law| consolidated(settling(20, load, law), (5e-3, 135));
+    let constant = [
+        [0.07348, 0.5],
+        [0.11619, 0.49616],
+        [0.16429, 0.4396],
+        [0.22932, 0.25553],
+        [0.29163, 0.02082],
+        [0.29649, 0.00018],
+        [0.29653, 0.0],
+    ];
+    let kozeny = [
+        [0.04422, 0.5],
+        [0.06991, 0.49917],
+        [0.09887, 0.48623],
+        [0.1397, 0.4334],
+        [0.21296, 0.27687],
+        [0.26489, 0.12175],
+        [0.29139, 0.02164],
+    ];
     let found = [
         compare("constant", 0.5, &of(PermeabilityLaw::Constant), &constant),
         compare("Kozeny-Carman", 0.5, &of(PermeabilityLaw::KozenyCarman), &kozeny),
@@ -95,8 +111,16 @@ fn weight_of_half_the_stiffness_settles_as_the_solution_by_lines() {
     let flow = water.flow.as_mut().expect("it flows");
     flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along *= LIGHT / WEIGHT;
     flow.drains[0].given = Given::Head(Course(vec![(0.0, 1.0)]));
-    let expected = [[0.02499, 0.36294], [0.04944, 0.29968], [0.09169, 0.2045], [0.15508, 0.04901], [0.17177, 0.00295]];
-    let off = compare("weight", 0.5, &consolidated(scene, (1e-4, 200)), &expected);
+    let expected = [
+        [0.01, 0.41587],
+        [0.02499, 0.36294],
+        [0.04944, 0.29968],
+        [0.09169, 0.2045],
+        [0.15508, 0.04901],
+        [0.17177, 0.00295],
+        [0.17281, 0.00001],
+    ];
+    let off = compare("weight", 0.5, &consolidated(scene, (1e-4, 210)), &expected);
     assert!(off.iter().all(|off| *off < 0.02));
 }
 
@@ -105,9 +129,24 @@ fn weight_of_half_the_stiffness_settles_as_the_solution_by_lines() {
 /// step.
 #[test]
 fn a_load_under_which_the_volume_follows_terzaghis_equation_settles_exactly_so() {
-    let half = [[0.074819, 0.49907], [0.10581, 0.48462], [0.149478, 0.42503], [0.226536, 0.24612], [0.276149, 0.08229]];
-    let fifth =
-        [[0.039215, 0.19951], [0.055458, 0.19203], [0.078345, 0.16265], [0.118733, 0.08593], [0.144737, 0.02674]];
+    let half = [
+        [0.04732, 0.5],
+        [0.074819, 0.49907],
+        [0.10581, 0.48462],
+        [0.149478, 0.42503],
+        [0.226536, 0.24612],
+        [0.276149, 0.08229],
+        [0.294804, 0.00738],
+    ];
+    let fifth = [
+        [0.024801, 0.2],
+        [0.039215, 0.19951],
+        [0.055458, 0.19203],
+        [0.078345, 0.16265],
+        [0.118733, 0.08593],
+        [0.144737, 0.02674],
+        [0.154514, 0.00233],
+    ];
     for (load, expected) in [(0.5, half), (0.2, fifth)] {
         let off = compare("exact", load, &of_terzaghis_volume(load), &expected);
         assert!(off.iter().all(|off| *off < 0.02));
@@ -127,7 +166,7 @@ fn of_terzaghis_volume(load: f64) -> Vec<[f64; 2]> {
     flow.soils[0].as_mut().expect("a soil").porosity = 0.9; // it has no part in the exact solution
     flow.soils = vec![flow.soils[0].clone(); rows];
     let first = flow.soils[0].as_ref().and_then(|soil| soil.permeability.as_ref()).expect("a soil").along;
-    let mut times = geometric(1e-4, 1.0, 240);
+    let mut times = geometric(1e-4, 2.0, 250);
     times.extend(T);
     times.sort_by(f64::total_cmp);
     times.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
