@@ -65,7 +65,7 @@ impl Viscous {
         let stretch = dF * dF.transpose();
         let mut tau = stress(&Symmetric::of(&stretch), lame);
         if let Some(returned) = returned {
-            tau.0.iter_mut().zip(returned.0).for_each(|(tau, taken)| *tau = *tau - taken * share);
+            tau.0.iter_mut().zip(returned.0).for_each(|(tau, taken)| *tau -= taken * share);
         }
         if gap > 0.0 {
             tau.0[..3].iter_mut().for_each(|normal| *normal += (lame.0 + lame.1 * (2.0 / 3.0)) * gap);

@@ -164,9 +164,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
             let one = Lanes::splat(simd, 1.0);
             let stretch = K::push_forward(&dF_bar, &Symmetric([one, one, one, zero, zero, zero]));
             let (viscous, share) = (damping::stress(&stretch, lame).0, self.damping.relative(material)?);
-            for k in 0..6 {
-                tau.0[k] = tau.0[k] + (viscous[k] - returned.0[k] * share);
-            }
+            tau = Symmetric(std::array::from_fn(|k| tau.0[k] + (viscous[k] - returned.0[k] * share)));
         }
         if let Some(pore) = &self.pore {
             let pore = eight.of(pore);
