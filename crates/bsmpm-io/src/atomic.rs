@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 
 use crate::Error;
 
+/// How a temporary name ends; it begins with a dot.
+const TEMPORARY: &str = ".tmp";
+
 /// Writes a file through `fill` under a temporary name in the same directory, then renames it to `path`.
 ///
 /// The bytes are on the disk before the rename, so that a loss of power leaves no empty file under the good name.
@@ -69,10 +72,22 @@ fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>)
     writer.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
+/// Removes files under temporary names, which a killed program has left in a folder that nobody else writes to.
+pub(crate) fn remove_temporaries(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        if name.as_encoded_bytes().starts_with(b".") && name.as_encoded_bytes().ends_with(TEMPORARY.as_bytes()) {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
 fn temporary(path: &Path) -> PathBuf {
     let mut name = OsString::from(".");
     name.push(path.file_name().unwrap_or_default());
-    name.push(".tmp");
+    name.push(TEMPORARY);
     path.with_file_name(name)
 }
 

@@ -1,6 +1,6 @@
 //! The frames of a run: `frames/step_*.vtu`, and `frames.pvd`, which gives each its time and is what ParaView opens.
 //!
-//! A run fills a frame's file, and a thread sees to it that the disk has it and gives it its name: a frame needs eight
+//! A run fills a frame's file, and a thread sees to it that the disk has it and gives it its name: a frame needs six
 //! calls that wait for the disk, some 30 ms, in which the run goes on. Frames that were filled meanwhile share them.
 
 use std::fs;
@@ -29,32 +29,38 @@ pub struct Entry {
     pub file: String,
 }
 
+/// Frames that wait for the thread at most: each holds a file open.
+const MOST_FILLED: usize = 16;
+
 /// Writes the frames of one run.
 #[derive(Debug)]
 pub struct Frames {
     directory: PathBuf,
-    entries: Vec<Entry>,                                            // of what is listed
-    filled: Vec<FilledFrame>,                                       // that no thread has yet
-    ending: Option<JoinHandle<Result<Vec<ManifestOutput>, Error>>>, // of those before, which are in the entries
+    entries: Vec<Entry>,          // of what is listed
+    filled: Vec<(Filled, Entry)>, // that no thread has yet, without their names
+    manifest: Option<Manifest>,   // names these
+    ending: Option<Ending>,
 }
 
-/// A frame without its name.
+/// A thread that ends frames.
 #[derive(Debug)]
-struct FilledFrame {
-    file: Filled,
-    entry: Entry,
-    manifest: Manifest, // names it
+struct Ending {
+    entries: Vec<Entry>, // of what is listed then
+    thread: JoinHandle<Result<Vec<ManifestOutput>, Error>>,
 }
 
 impl Frames {
-    /// Makes the folder `frames` in an output directory. The list appears with the first frame.
+    /// Makes the folder `frames` in an output directory, without what a killed run has left there half done. The list
+    /// appears with the first frame.
     ///
     /// # Errors
     /// [`Error::File`] when the folder cannot be made.
     pub fn create(directory: &Path) -> Result<Self, Error> {
         let folder = directory.join("frames");
         fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
-        Ok(Self { directory: directory.to_owned(), entries: Vec::new(), filled: Vec::new(), ending: None })
+        atomic::remove_temporaries(&folder).map_err(Error::file("clear", &folder))?;
+        let directory = directory.to_owned();
+        Ok(Self { directory, entries: Vec::new(), filled: Vec::new(), manifest: None, ending: None })
     }
 
     /// Goes on with the frames of a run, those of `entries` that are there, and lists them anew.
@@ -81,7 +87,7 @@ impl Frames {
     /// Those of [`vtu::write`]; the list then names the frames before only.
     pub fn write(&mut self, frame: &Frame) -> Result<(), Error> {
         vtu::write(&self.directory.join(Self::file(frame.step)), frame)?;
-        self.enter(Entry { time: frame.time, file: Self::file(frame.step) });
+        enter(&mut self.entries, Entry { time: frame.time, file: Self::file(frame.step) });
         write_collection(&self.directory.join(COLLECTION), &self.entries)
     }
 
@@ -93,11 +99,11 @@ impl Frames {
     pub fn begin(&mut self, parts: Parts<'_>, manifest: &Manifest) -> Result<Vec<ManifestOutput>, Error> {
         let entry = Entry { time: parts.head.time, file: Self::file(parts.head.step) };
         // Two of one name at a time have one temporary name.
-        let is_there =
-            self.filled.iter().map(|frame| &frame.entry).chain(&self.entries).any(|one| one.file == entry.file);
-        let mut ended = self.ended(is_there)?;
-        let file = vtu::filled(&self.directory.join(&entry.file), parts)?;
-        self.filled.push(FilledFrame { file, entry, manifest: manifest.clone() });
+        let listed = self.ending.iter().flat_map(|ending| &ending.entries).chain(&self.entries);
+        let is_there = self.filled.iter().map(|(_, entry)| entry).chain(listed).any(|one| one.file == entry.file);
+        let mut ended = self.ended(is_there || self.filled.len() >= MOST_FILLED)?;
+        self.filled.push((vtu::filled(&self.directory.join(&entry.file), parts)?, entry));
+        self.manifest = Some(manifest.clone());
         ended.extend(self.ended(false)?);
         Ok(ended)
     }
@@ -109,42 +115,51 @@ impl Frames {
     pub fn ended(&mut self, wait: bool) -> Result<Vec<ManifestOutput>, Error> {
         let mut ended = Vec::new();
         loop {
-            if let Some(ending) = self.ending.take_if(|ending| wait || ending.is_finished()) {
-                ended.extend(ending.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?);
+            if let Some(Ending { entries, thread }) = self.ending.take_if(|ending| wait || ending.thread.is_finished())
+            {
+                let outputs = thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+                ended.extend(outputs.inspect_err(|_| self.filled.clear())?);
+                self.entries = entries;
             }
             if self.ending.is_some() || self.filled.is_empty() {
                 return Ok(ended);
             }
-            let filled = std::mem::take(&mut self.filled);
-            filled.iter().for_each(|frame| self.enter(frame.entry.clone()));
-            let (directory, entries) = (self.directory.clone(), self.entries.clone());
-            self.ending = Some(thread::spawn(move || end(&directory, filled, &entries)));
+            let (filled, manifest) = (std::mem::take(&mut self.filled), self.manifest.take());
+            let mut entries = self.entries.clone();
+            filled.iter().for_each(|(_, entry)| enter(&mut entries, entry.clone()));
+            let (directory, all) = (self.directory.clone(), entries.clone());
+            let thread = thread::spawn(move || end(&directory, (filled, manifest), &all));
+            self.ending = Some(Ending { entries, thread });
         }
     }
 
-    fn enter(&mut self, entry: Entry) {
-        self.entries.retain(|other| other.file != entry.file);
-        self.entries.push(entry);
-    }
-
-    /// The frames that are listed, or are about to be, in their order.
+    /// The frames that are listed, in their order.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
 }
 
+/// A frame takes the place of one of the same step.
+fn enter(entries: &mut Vec<Entry>, entry: Entry) {
+    entries.retain(|other| other.file != entry.file);
+    entries.push(entry);
+}
+
 /// Gives frames that were filled their names, once the manifest has these, and lists them.
-fn end(directory: &Path, filled: Vec<FilledFrame>, entries: &[Entry]) -> Result<Vec<ManifestOutput>, Error> {
-    filled.last().map_or(Ok(()), |newest| newest.manifest.write(directory))?;
+fn end(
+    directory: &Path,
+    (filled, manifest): (Vec<(Filled, Entry)>, Option<Manifest>),
+    entries: &[Entry],
+) -> Result<Vec<ManifestOutput>, Error> {
+    manifest.map_or(Ok(()), |manifest| manifest.write(directory))?;
     let mut outputs = Vec::new();
-    for FilledFrame { file, entry, .. } in filled {
+    for (file, entry) in filled {
         file.give_name()?;
         outputs.push(ManifestOutput { path: entry.file, bytes: None, blake3: None });
     }
-    let list = directory.join(COLLECTION);
     let first = outputs.first().map(|output| directory.join(&output.path));
     first.map_or(Ok(()), |first| atomic::sync_folder(&first).map_err(Error::file("write", &first)))?;
-    write_collection(&list, entries)?;
+    write_collection(&directory.join(COLLECTION), entries)?;
     outputs.iter_mut().try_for_each(|output| output.complete(directory))?;
     Ok(outputs)
 }

@@ -147,7 +147,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     rigid::check(&case, record, report);
     stage::check(&mut case, record, report);
     load::sudden(&case, report);
-    strip::rest(&mut case, record, report);
+    physics::rest(&mut case, record, report);
     strip::beside_fixed(&case, report);
     section::warn_of_neighbours(&case, record, report);
     lines::place(&mut case, record, report);

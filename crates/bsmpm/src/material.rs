@@ -201,55 +201,32 @@ macro_rules! laws {
             }
 
             /// Kirchhoff stress in Pa of a point, or of several, by components XX, YY, ZZ, XY of `b_trial` and the
-            /// `state` of the last step, which has the law's variables first: as [`Material::respond`] has it; and, if
-            /// it is wanted, what the return takes from that of the trial, as [`Response::returned`] has it. `None`
-            /// where only these can tell: of a graded or long law, of what is taken of elasticity that is not linear,
-            /// and of trials of which one is no strain.
+            /// `state` of the last step, which has the law's variables first: as [`Material::respond`] has it. `None`
+            /// where only that can tell: of a graded or long law, and of trials of which one is no strain.
             #[inline(always)]
-            pub fn stress<R: Real>(&self, b_trial: [R; 4], state: &[R], returned: bool) -> Option<[Symmetric<R>; 2]> {
-                if !self.is_in_lanes() || returned && !self.is_linear() {
+            pub fn stress<R: Real>(&self, b_trial: [R; 4], state: &[R]) -> Option<Symmetric<R>> {
+                if !self.is_in_lanes() {
                     return None;
                 }
-                self.stress_of(&Spectrum::planar(b_trial)?, state, returned)
+                self.stress_of(&Spectrum::planar(b_trial)?, state)
             }
 
             /// The same by all components; `None` also where XZ and YZ of one are none.
             #[inline(always)]
-            pub fn stress_in_space<R: Real>(
-                &self,
-                b_trial: [R; 6],
-                state: &[R],
-                returned: bool,
-            ) -> Option<[Symmetric<R>; 2]> {
-                if !self.is_in_lanes() || returned && !self.is_linear() {
+            pub fn stress_in_space<R: Real>(&self, b_trial: [R; 6], state: &[R]) -> Option<Symmetric<R>> {
+                if !self.is_in_lanes() {
                     return None;
                 }
-                self.stress_of(&Spectrum::general(b_trial)?, state, returned)
+                self.stress_of(&Spectrum::general(b_trial)?, state)
             }
 
             #[inline(always)]
-            fn stress_of<R: Real>(
-                &self,
-                spectrum: &Spectrum<R>,
-                state: &[R],
-                returned: bool,
-            ) -> Option<[Symmetric<R>; 2]> {
-                let (tau, moduli) = match self {
-                    $(Self::$Law(law) if <$module::$Law as Law>::IN_LANES => {
-                        (law.project(law.stress(spectrum.eps), state).tau, law.moduli())
-                    })*
+            fn stress_of<R: Real>(&self, spectrum: &Spectrum<R>, state: &[R]) -> Option<Symmetric<R>> {
+                let tau = match self {
+                    $(Self::$Law(law) if <$module::$Law as Law>::IN_LANES => law.project(law.stress(spectrum.eps), state).tau,)*
                     _ => return None,
                 };
-                let tau = spectrum.assemble(tau);
-                let mut taken = tau;
-                if returned {
-                    let trial = spectrum.assemble(moduli.stress(spectrum.eps));
-                    // Not by a closure: see `Spectrum::planar`.
-                    for k in 0..6 {
-                        taken.0[k] = trial.0[k] - tau.0[k];
-                    }
-                }
-                Some([tau, taken])
+                Some(spectrum.assemble(tau))
             }
 
             /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7), of a point in

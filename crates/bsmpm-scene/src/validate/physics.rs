@@ -4,7 +4,7 @@ use super::NEARLY_INCOMPRESSIBLE;
 use super::place;
 use super::rigid;
 use super::site::{normal_of, places};
-use super::strip::moves;
+use super::strip::{moves, with_body};
 use crate::case::{Acting, Base, Body, Case, Drain, Geometry, Initial, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
@@ -13,10 +13,13 @@ use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
+use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Given;
 
 /// Components of a normal below which it does not hold them.
 pub(super) const ALONG: f64 = 1e-9;
+/// Cosine of the slope up to which a strip lies on the ground beneath it; steeper it holds the ground beside it.
+const LEVEL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Errors and warnings about a case that is valid in its parts.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
@@ -203,6 +206,45 @@ fn holds(case: &Case, component: usize) -> bool {
         matches!(support, Support::Absorbing | Support::FreeField) && reached(case, axis, upper)
     };
     holds_at_rest(case, component, None) || (0..2).any(|axis| absorbs(axis, false) || absorbs(axis, true))
+}
+
+/// Finds what lies on the ground at the start: the footing, and what material comes off, have no part in an equilibrium
+/// without motion, in which the ground would hang from them. What else is prescribed may be what a body hangs from.
+pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
+    let Some(down) = case.gravity.as_ref().map(|gravity| Vector::from(gravity.acceleration)) else { return };
+    let bodies: Vec<&Body> = case.bodies_at_start().collect();
+    let lies = |site: Site| {
+        let along = Vector::<3>::from(normal_of(site)).dot(&down) / down.norm();
+        let with_body = |off: f64| with_body(site, along.signum() * off, (&case.grid, &bodies));
+        along.abs() > LEVEL
+            && place::beside(&case.grid, with_body).is_some_and(|[below, above]| 2 * below >= above.max(1))
+    };
+    let footing = case.footing.as_ref().is_some_and(|footing| lies(footing.site));
+    let prescribed: Vec<bool> = case.prescribed.iter().map(|of| lies(of.site)).collect();
+    // What else would not stand it holds at the start, too.
+    let stands = (0..case.grid.dims()).all(|axis| holds_at_rest(case, axis, Some(Acting::Strip(0))));
+    case.footing.iter_mut().for_each(|of| of.rests = footing && stands);
+    let is_sought = case.settles || case.initial == Some(Initial::Elastic);
+    if footing && !stands && is_sought {
+        report.warn(
+            "footing: nothing else holds the bodies along every axis, so that they hang from it in the equilibrium of [initial]: \
+             fix a face, or let a [[stage]] apply it",
+        );
+    }
+    let since_start = |case: &Case, number: usize| {
+        case.acts_since(Acting::Strip(number + usize::from(case.footing.is_some())), 0.0).is_some()
+    };
+    for (number, (record, lies)) in root.records("prescribed").iter().zip(prescribed).enumerate() {
+        let lifts = case.prescribed[number].contact.is_some_and(|contact| contact.law.lifts);
+        case.prescribed[number].rests = lies && lifts;
+        if lies && !lifts && is_sought && since_start(case, number) {
+            report.warn(format!(
+                "{}: it lies on the ground, which hangs from it in the equilibrium of [initial]; where it shall rest \
+                 there make it the [footing], let a [[stage]] apply it, or give components = {{ friction = 0.3, lifts = true }}",
+                record.path
+            ));
+        }
+    }
 }
 
 /// Whether something other than `except` holds a component of a body for as long as that takes.

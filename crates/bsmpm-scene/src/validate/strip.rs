@@ -1,22 +1,19 @@
 //! The footing and prescribed motions.
 
-use super::place::{beside, is_beyond, is_in, side_of_bodies};
+use super::place::{is_beyond, is_in, side_of_bodies};
 use super::site::{AroundStrip, corners, normal_of, places, site};
-use crate::case::{Acting, Base, Body, Case, Face, Footing, History, Initial, MotionPath, Prescribed, Quantity, Site};
+use crate::case::{Base, Body, Case, Face, Footing, History, MotionPath, Prescribed, Quantity, Site};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces::{name_of_strip, strip_of_face};
 use crate::words::{AnalysisType, Components, Side, Support, Word};
 use bsmpm::boundary::StripContact;
-use bsmpm::tensor::Vector;
 
 /// Parts of a motion below which it does not count.
 const NOTHING: f64 = 1e-12;
 /// Parts of a grid's length by which an end may lie off a face and be on it.
 const ON: f64 = 1e-9;
-/// Cosine of the slope up to which a strip lies on the ground beneath it; steeper it holds the ground beside it.
-const LEVEL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// The footing, if there is one and it is right.
 pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Footing> {
@@ -103,40 +100,10 @@ fn rubs(
 }
 
 /// Places of a strip at which one of the bodies is so many metres along its normal.
-fn with_body(site: Site, off: f64, (grid, bodies): (&GridSpec, &[&Body])) -> usize {
+pub(super) fn with_body(site: Site, off: f64, (grid, bodies): (&GridSpec, &[&Body])) -> usize {
     let normal = normal_of(site);
     let beside = |at: [f64; 3]| std::array::from_fn(|axis| at[axis] + off * normal[axis]);
     places(site, grid).into_iter().filter(|at| bodies.iter().any(|body| is_in(body, grid, beside(*at)))).count()
-}
-
-/// Finds what lies on the ground at the start: the footing, and what material comes off, have no part in an equilibrium
-/// without motion, in which the ground would hang from them. What else is prescribed may be what a body hangs from.
-pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
-    let Some(down) = case.gravity.as_ref().map(|gravity| Vector::from(gravity.acceleration)) else { return };
-    let bodies: Vec<&Body> = case.bodies_at_start().collect();
-    let lies = |site: Site| {
-        let along = Vector::<3>::from(normal_of(site)).dot(&down) / down.norm();
-        let with_body = |off: f64| with_body(site, along.signum() * off, (&case.grid, &bodies));
-        along.abs() > LEVEL && beside(&case.grid, with_body).is_some_and(|[below, above]| 2 * below >= above.max(1))
-    };
-    let footing = case.footing.as_ref().map(|footing| lies(footing.site));
-    let prescribed: Vec<bool> = case.prescribed.iter().map(|of| lies(of.site)).collect();
-    case.footing.iter_mut().zip(footing).for_each(|(footing, lies)| footing.rests = lies);
-    let is_sought = case.settles || case.initial == Some(Initial::Elastic);
-    let since_start = |case: &Case, number: usize| {
-        case.acts_since(Acting::Strip(number + usize::from(case.footing.is_some())), 0.0).is_some()
-    };
-    for (number, (record, lies)) in root.records("prescribed").iter().zip(prescribed).enumerate() {
-        let lifts = case.prescribed[number].contact.is_some_and(|contact| contact.law.lifts);
-        case.prescribed[number].rests = lies && lifts;
-        if lies && !lifts && is_sought && since_start(case, number) {
-            report.warn(format!(
-                "{}: it lies on the ground, which hangs from it in the equilibrium of [initial]; where it shall rest \
-                 there make it the [footing], let a [[stage]] apply it, or give components = {{ friction = 0.3, lifts = true }}",
-                record.path
-            ));
-        }
-    }
 }
 
 /// The key that gives a motion.

@@ -66,7 +66,7 @@ impl Budget {
         self.external += step.external;
         // What damping takes is that of the forces at the step's end, external work that of the mean of both ends. The
         // two differ where rates grow: in the second step of a damped column that is let go by a tenth of all energy.
-        // The mean of damping is that of rates that are alike but for their size, else less.
+        // The mean is that of steps of one length whose rates are alike but for their size.
         self.plastic += step.plastic - 0.5 * (step.damped - (step.damped * self.damped).max(0.0).sqrt());
         self.damped = step.damped;
         let energy = step.stored.kinetic + step.stored.elastic + self.plastic;

@@ -2,7 +2,7 @@
 
 use super::law::Branch;
 use super::spectral::Spectrum;
-use super::{Flowed, Moduli};
+use super::{Flowed, MaterialError, Moduli};
 use crate::tensor::Symmetric;
 
 /// The response of one point, in the axes of the trial b; principal values are descending.
@@ -19,6 +19,20 @@ impl Response {
     #[inline]
     pub(super) fn new(b_trial: Symmetric, trial: Spectrum, moduli: Moduli, (tau, flowed): ([f64; 3], Flowed)) -> Self {
         Self { b_trial, trial, moduli, tau, flowed }
+    }
+
+    /// Of elastic material to a left Cauchy-Green tensor, by Lamé's moduli in Pa.
+    ///
+    /// # Errors
+    /// As [`Material::respond`](super::Material::respond).
+    pub fn elastic(b: &Symmetric, (lambda, mu): (f64, f64)) -> Result<Self, MaterialError> {
+        let (spectrum, moduli) = (Spectrum::of(b)?, Moduli { lambda, mu });
+        Ok(Self::new(*b, spectrum, moduli, (moduli.stress(spectrum.eps), Flowed::Elastic)))
+    }
+
+    /// Hencky strain of the trial: `½ ln b_trial`.
+    pub fn trial_strain(&self) -> Symmetric {
+        self.trial.assemble(self.trial.eps)
     }
 
     /// Kirchhoff stress in Pa: `τ = Σ_A τ_A n_A ⊗ n_A` (Eq. 10).

@@ -100,14 +100,9 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 K::working(&(change * inverse.transpose())) * volume
             };
             let viscous = trial.viscous(problem.model, points, p, &response);
-            let unreturned = viscous.as_ref().and_then(|_| Some(response.unreturned()?.tangent()));
             let viscous = viscous.map(|viscous| {
-                let tau = viscous.tau.full();
-                let change = move |l: &Tensor| {
-                    let returned = unreturned.as_ref().map(|trial| trial.apply(l) - tangent.apply(l));
-                    viscous.apply(l, returned)
-                };
-                (tau, change)
+                let returned = response.unreturned().map(|trial| [trial.tangent(), tangent]);
+                (viscous.tau.full(), viscous.tangent(returned))
             });
             moduli.push(K::Gradient::moduli(|k, l| match &viscous {
                 Some((tau, change)) => unit(k, l) + viscous_flux::<K, D>((tau, change), &inverse, (k, l)) * volume,

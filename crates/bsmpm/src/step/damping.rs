@@ -1,17 +1,18 @@
 //! Kelvin-Voigt damping: beside the law's stress a viscous one, the elastic stiffness times the rate of elastic strain.
 //!
-//! `τ_v = (β/Δt) D : (e - Δεᵖ)`, `e = ½ (ΔF̄ ΔF̄ᵀ - I)` the strain of the step, Δεᵖ what of it is plastic, D : Δεᵖ what
+//! `τ_v = (β/Δt) D : (e - Δεᵖ)`, `e = ½ ln ΔF̄ ΔF̄ᵀ` the strain of the step, Δεᵖ what of it is plastic, D : Δεᵖ what
 //! the return took from the trial stress, and β the material's retardation time: a wave of the circular frequency ω has
-//! the damping ratio βω/2. By the mean rate of the step it takes energy in every step, however long, and a motion at
-//! constant velocity or a rotation feels nothing of it. It comes half a step late, which raises the frequency by the
-//! share βω²Δt/4.
+//! the damping ratio βω/2. By the mean rate of the step it takes energy in every step in which nothing flows, however
+//! long, and a motion at constant velocity or a rotation feels nothing of it. It comes half a step late, which raises
+//! the frequency by the share βω²Δt/4. Both strains are logarithms, as their difference is small where soil flows:
+//! ½ (ΔF̄ ΔF̄ᵀ - I) dilates by γ²/2 under a shear γ.
 //!
 //! With the rate of all strain the stress would have no bound where material flows: the clay of
 //! `cases/shaken_slope.toml` slips .031 m with 5 % at 2 Hz by it, .270 m by that of elastic strain, .286 m without.
 
+use crate::material::{MaterialError, Response, Tangent};
 use crate::model::Model;
 use crate::points::Points;
-use crate::real::Real;
 use crate::step::inertia::Inertia;
 use crate::step::nodes::Nodes;
 use crate::tensor::{Symmetric, Tensor};
@@ -26,9 +27,8 @@ pub struct Viscous {
     pub tau: Symmetric,
     /// J/m3  what it dissipates in the step per reference volume
     pub dissipation: f64,
-    lame: (f64, f64), // Pa, times β/Δt
-    share: f64,       // β/Δt
-    stretch: Tensor,  // ΔF̄ ΔF̄ᵀ
+    elastic: Response, // to the strain of the step, by moduli times β/Δt
+    share: f64,        // β/Δt
 }
 
 impl Damping {
@@ -61,35 +61,34 @@ impl Damping {
 impl Viscous {
     /// Under the deformation ΔF̄ of a step, with Lamé's moduli times β/Δt, where a return took `returned`, Pa, from the
     /// trial stress, if it did, and β/Δt; a `gap` that was open before, as a logarithm of volume, is no strain.
-    pub fn of(dF: &Tensor, lame: (f64, f64), (returned, share): (Option<Symmetric>, f64), gap: f64) -> Self {
-        let stretch = dF * dF.transpose();
-        let mut tau = stress(&Symmetric::of(&stretch), lame);
+    ///
+    /// # Errors
+    /// A step that is no strain.
+    pub fn of(
+        dF: &Tensor,
+        lame: (f64, f64),
+        (returned, share): (Option<Symmetric>, f64),
+        gap: f64,
+    ) -> Result<Self, MaterialError> {
+        let elastic = Response::elastic(&Symmetric::of(&(dF * dF.transpose())), lame)?;
+        let mut tau = elastic.tau();
         if let Some(returned) = returned {
             tau.0.iter_mut().zip(returned.0).for_each(|(tau, taken)| *tau -= taken * share);
         }
         if gap > 0.0 {
             tau.0[..3].iter_mut().for_each(|normal| *normal += (lame.0 + lame.1 * (2.0 / 3.0)) * gap);
         }
-        let strain = (stretch - Tensor::identity()) * 0.5;
-        Self { tau, dissipation: tau.full().dot(&strain), lame, share, stretch }
+        let dissipation = tau.full().dot(&elastic.trial_strain().full());
+        Ok(Self { tau, dissipation, elastic, share })
     }
 
-    /// Change of the stress with a spatial gradient `l` at the end of the step, Pa, with which that taken by the return
-    /// changes by `returned`.
-    pub fn apply(&self, l: &Tensor, returned: Option<Tensor>) -> Tensor {
-        let turned = l * self.stretch;
-        let strain = (turned + turned.transpose()) * 0.5;
-        let all = strain * (2.0 * self.lame.1) + Tensor::identity() * (self.lame.0 * strain.trace());
-        returned.map_or(all, |returned| all - returned * self.share)
+    /// How the stress changes with a spatial gradient at the end of the step, Pa, where `returned` is how that changes
+    /// which the return took.
+    pub fn tangent(&self, returned: Option<[Tangent; 2]>) -> impl Fn(&Tensor) -> Tensor + use<> {
+        let (elastic, share) = (self.elastic.tangent(), self.share);
+        move |l| {
+            let all = elastic.apply(l);
+            returned.as_ref().map_or(all, |[trial, tau]| all - (trial.apply(l) - tau.apply(l)) * share)
+        }
     }
-}
-
-/// τ_v of ΔF̄ ΔF̄ᵀ without plastic strain, Pa.
-#[inline(always)]
-pub fn stress<R: Real>(stretch: &Symmetric<R>, (lambda, mu): (f64, f64)) -> Symmetric<R> {
-    let [xx, yy, zz, xy, yz, xz] = stretch.0;
-    let normal = [xx - 1.0, yy - 1.0, zz - 1.0];
-    let mean = (normal[0] + normal[1] + normal[2]) * (0.5 * lambda);
-    let along = |k: usize| normal[k] * mu + mean;
-    Symmetric([along(0), along(1), along(2), xy * mu, yz * mu, xz * mu])
 }

@@ -9,7 +9,7 @@ use crate::parallel::Halo;
 use crate::points::Points;
 use crate::real::Real;
 use crate::stabilisation::Stabilisation;
-use crate::step::damping::{self, Damping, Viscous};
+use crate::step::damping::{Damping, Viscous};
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
 use crate::tensor::{Symmetric, Tensor};
@@ -107,7 +107,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     }
 
     /// Steps (4f)-(4i) of eight points: dF and the stress. `None` where [`Trial::respond`] has to answer: of points of
-    /// several materials, of graded ones, of those that gape, and where the material says so.
+    /// several materials, of graded and damped ones, of those that gape, and where the material says so.
     #[inline(always)]
     pub fn respond_in_lanes<S: Simd>(
         &self,
@@ -118,7 +118,8 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     ) -> Option<Stressed<Lanes<S>>> {
         let material = points.material[eight.points().start];
         let law = &model.materials[usize::from(material)];
-        if law.is_graded() || points.gap.is_some() || eight.points().any(|p| points.material[p] != material) {
+        let is_alone = law.is_graded() || self.damping.relative(material).is_some() || points.gap.is_some();
+        if is_alone || eight.points().any(|p| points.material[p] != material) {
             return None;
         }
         let grad = eight.of(&self.grad);
@@ -153,19 +154,12 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         for (k, variable) in state[..width].iter_mut().enumerate() {
             *variable = Lanes::from_fn(simd, |lane| points.state_of(eight.point(lane))[k]);
         }
-        let lame = self.damping.lame(model, points, eight.point(0));
-        let [mut tau, returned] = if D == 2 {
+        let mut tau = if D == 2 {
             let [xx, yy, zz, xy, ..] = b_trial;
-            law.stress([xx, yy, zz, xy], &state[..width], lame.is_some())?
+            law.stress([xx, yy, zz, xy], &state[..width])?
         } else {
-            law.stress_in_space(b_trial, &state[..width], lame.is_some())?
+            law.stress_in_space(b_trial, &state[..width])?
         };
-        if let Some(lame) = lame {
-            let one = Lanes::splat(simd, 1.0);
-            let stretch = K::push_forward(&dF_bar, &Symmetric([one, one, one, zero, zero, zero]));
-            let (viscous, share) = (damping::stress(&stretch, lame).0, self.damping.relative(material)?);
-            tau = Symmetric(std::array::from_fn(|k| tau.0[k] + (viscous[k] - returned.0[k] * share)));
-        }
         if let Some(pore) = &self.pore {
             let pore = eight.of(pore);
             let pore = Lanes::from_fn(simd, |lane| *pore[lane]);
@@ -179,7 +173,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     pub fn viscous(&self, model: &Model<K, D>, points: &Points<D>, p: usize, response: &Response) -> Option<Viscous> {
         let (lame, share) = (self.damping.lame(model, points, p)?, self.damping.relative(points.material[p])?);
         let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
-        Some(Viscous::of(&dF_bar, lame, (response.returned(), share), points.gap_of(p)))
+        Viscous::of(&dF_bar, lame, (response.returned(), share), points.gap_of(p)).ok()
     }
 
     /// `tau` and the viscous stress of point `p`, Pa, of the constitution's `response` there.
