@@ -20,7 +20,7 @@ pub fn peak_memory() -> u64 {
     line.and_then(|line| line.split_whitespace().nth(1)?.parse::<u64>().ok()).unwrap_or(0) * 1024
 }
 
-/// Cores of this host, whoever may use them; `None` if unknown.
+/// Processors of this host that its system counts, whoever may use them; `None` if unknown.
 pub fn cores() -> Option<u64> {
     let listed = fs::read_to_string("/proc/cpuinfo").ok()?;
     Some(listed.lines().filter(|line| line.starts_with("processor")).count() as u64).filter(|&cores| cores > 0)

@@ -97,7 +97,7 @@ fn crowded(world: &SimpleCommunicator, threads: u32) -> Option<String> {
     }
     let all = machine::cores().filter(|&all| threads > 1 && here > all)?;
     Some(format!(
-        "--threads {threads}: the ranks on this host have {here} threads for {all} cores, where they take turns"
+        "--threads {threads}: the ranks on this host have {here} threads for {all} processors, where they take turns"
     ))
 }
 

@@ -353,8 +353,7 @@ const SHARES: Range = Range::of(Included(0.0), Included(1.0));
 static DAMPING: Table = Table {
     header: "[material.NAME] damping",
     doc: "Kelvin-Voigt damping: the elastic stiffness times ratio/(pi frequency) times the rate of elastic strain. Higher \
-          frequencies are damped more, in proportion; motion without strain and plastic flow are not, but the noise of \
-          stress in fast flow is: 2 % at 5 Hz take a quarter of the run-out of a column of sand 10 cm high",
+          frequencies are damped more, in proportion; motion without strain and plastic flow are not",
     keys: &[
         key("ratio", Quantity(In::Number, BELOW_1), Required, "of the damping to the critical one, at the frequency"),
         key("frequency", Quantity(In::Number, Range::POSITIVE), Required, "Hz"),

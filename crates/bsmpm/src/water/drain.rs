@@ -22,6 +22,8 @@ use crate::water::flow::{Flow, Given, Motion};
 /// a ring whose inner radius is 4, 8, 16 cells is off by .5, .02, .02 % with 1e2, by 5.7, 1.0, .4 % with 1e4, and by
 /// -1.7, -1.2, -.5 % with 1e1, where the drain itself resists.
 const CONDUCTANCE: f64 = 1e2;
+/// Parts of a cell by which ends of neighbours may lie apart.
+const ON: f64 = 1e-9;
 
 /// What a drain or inflow did in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -207,15 +209,18 @@ impl<const D: usize> SurfacePlace<D> {
     }
 }
 
-/// The most cells that are now between points of a surface of which the ends met at the start, in the order of the
-/// surface: what the ground has laid bare between them is closed.
+/// The most cells that are now between points of a surface whose ends met at the start, or which were within a cell, in
+/// the order of the surface: what the ground has laid bare between them is closed.
 fn cells_apart<const D: usize>(grid: &Grid<D>, starts: &[SurfacePoint<D>], places: &[SurfacePlace<D>]) -> f64 {
-    let meets = |pair: &[SurfacePoint<D>]| (pair[0].x - pair[1].x).norm() < grid.smallest_edge();
+    let edge = grid.smallest_edge();
+    let meet = |a: &Vector<D>, b: &Vector<D>| (a - b).norm() <= ON * edge;
+    let meets = |pair: &[SurfacePoint<D>]| {
+        let ends = pair[0].ends.iter().any(|a| pair[1].ends.iter().any(|b| meet(a, b)));
+        ends || (pair[0].x - pair[1].x).norm() < edge
+    };
     let pairs = starts.windows(2).zip(places.windows(2)).filter(|(starts, _)| meets(starts));
     let apart = |places: &[SurfacePlace<D>]| {
-        let edges = grid
-            .locate(&places[0].x)
-            .map_or_else(|| Vector::from_element(grid.smallest_edge()), |cell| grid.cell_box(&cell).1);
+        let edges = grid.locate(&places[0].x).map_or_else(|| Vector::from_element(edge), |cell| grid.cell_box(&cell).1);
         (places[1].x - places[0].x).component_div(&edges).norm()
     };
     pairs.map(|(_, places)| apart(places)).fold(0.0, f64::max)
