@@ -37,6 +37,7 @@ fn under_way(scratch: &Scratch, ranks: Option<usize>) -> Running {
     let _ = std::fs::remove_dir_all(scratch.path("case.out"));
     let mut running = scratch.job(ranks, &["case.toml"]).within(HANGS).start();
     running.until("its tenth step", || made(scratch) >= 10);
+    running.until("the frame of the start", || scratch.path("case.out/frames.pvd").exists());
     running
 }
 
