@@ -21,9 +21,9 @@ pub fn peak_memory() -> u64 {
 }
 
 /// Processors of this host that its system counts, whoever may use them; `None` if unknown.
-pub fn cores() -> Option<u64> {
+pub fn processors() -> Option<u64> {
     let listed = fs::read_to_string("/proc/cpuinfo").ok()?;
-    Some(listed.lines().filter(|line| line.starts_with("processor")).count() as u64).filter(|&cores| cores > 0)
+    Some(listed.lines().filter(|line| line.starts_with("processor")).count() as u64).filter(|&count| count > 0)
 }
 
 /// File name of the BLAS that is loaded, if it can be told.

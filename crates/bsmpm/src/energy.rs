@@ -241,10 +241,7 @@ impl Draft {
         let (pressures, volume) = (Pressures::of(problem, &found.trial), problem.volume());
         let work_of = |p: usize, grad: K::Gradient| {
             let tau = pressures.acting::<K, D>(p, volume[p], answers[p].tau);
-            let mut tau = found.trial.pressed(p, tau);
-            if let Some(viscous) = found.trial.viscous_at(model, points, p) {
-                tau.0.iter_mut().zip(viscous.tau.0).for_each(|(tau, more)| *tau += more);
-            }
+            let tau = found.trial.pressed(p, found.trial.damped_at(model, points, p, tau));
             volume[p] * K::flux(&tau, &found.trial.dF(p)).dot(&grad)
         };
         let work = transfer::gradients::<K, D, _>((shape, &points.x), u, work_of);

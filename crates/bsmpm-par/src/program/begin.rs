@@ -95,7 +95,7 @@ fn crowded(world: &SimpleCommunicator, threads: u32) -> Option<String> {
              --map-by slot:PE={threads}, gives it more"
         ));
     }
-    let all = machine::cores().filter(|&all| threads > 1 && here > all)?;
+    let all = machine::processors().filter(|&all| threads > 1 && here > all)?;
     Some(format!(
         "--threads {threads}: the ranks on this host have {here} threads for {all} processors, where they take turns"
     ))

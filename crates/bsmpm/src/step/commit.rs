@@ -186,8 +186,8 @@ fn keep<K: Kinematics<D>, const D: usize>(
 ) {
     let averages = model.stabilisation.averages();
     let dilation = averages.then(|| threads::each(points.len(), |p| trial.dilation(model, points, p)));
-    let viscous = |p: usize| trial.viscous_at(model, points, p).map_or(Symmetric::default(), |viscous| viscous.tau);
-    let viscous = (!model.damping.is_empty()).then(|| threads::each(points.len(), viscous));
+    let damped = (!model.damping.is_empty())
+        .then(|| threads::each(points.len(), |p| trial.damped_at(model, points, p, answers[p].tau)));
     let [mut sigma, mut b_e] = [&mut points.sigma, &mut points.b_e].map(std::mem::take);
     let (mut F, mut eps_p) = (std::mem::take(&mut points.F), std::mem::take(&mut points.eps_p));
     let (sigmas, elastic, Fs) = (sigma.apart(), b_e.apart(), F.apart());
@@ -198,10 +198,7 @@ fn keep<K: Kinematics<D>, const D: usize>(
         let (mut F, mut eps_p) = (Fs[chunk].lock().expect(only), plastic[chunk].lock().expect(only));
         for (k, p) in range.enumerate() {
             let (answer, deformed) = (&answers[p], trial.dF(p) * F.at(k));
-            let mut tau = answer.tau;
-            if let Some(viscous) = &viscous {
-                tau.0.iter_mut().zip(viscous[p].0).for_each(|(tau, more)| *tau += more);
-            }
+            let tau = damped.as_ref().map_or(answer.tau, |damped| damped[p]);
             let dilation = dilation.as_ref().map_or_else(|| points.dilation_of(p), |dilation| dilation[p]);
             sigma.set(k, tau.scaled(1.0 / (deformed.determinant() * dilation)));
             F.set(k, deformed);

@@ -88,6 +88,13 @@ impl Viscous {
         Ok(Self { tau, dissipation, elastic, share })
     }
 
+    /// The stress beside `tau`, Pa.
+    #[inline]
+    pub fn beside(&self, mut tau: Symmetric) -> Symmetric {
+        tau.0.iter_mut().zip(self.tau.0).for_each(|(tau, more)| *tau += more);
+        tau
+    }
+
     /// How the stress changes with a spatial gradient at the end of the step, Pa, where `returned` is how that changes
     /// which the return took.
     pub fn tangent(&self, returned: Option<[Tangent; 2]>) -> impl Fn(&Tensor) -> Tensor + use<> {

@@ -183,18 +183,20 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         model: &Model<K, D>,
         points: &Points<D>,
         (p, response): (usize, &Response),
-        mut tau: Symmetric,
+        tau: Symmetric,
     ) -> Symmetric {
-        if let Some(viscous) = self.viscous(model, points, p, response) {
-            tau.0.iter_mut().zip(viscous.tau.0).for_each(|(tau, more)| *tau += more);
-        }
-        tau
+        self.viscous(model, points, p, response).map_or(tau, |viscous| viscous.beside(tau))
     }
 
-    /// The viscous stress of point `p` where only its state is known, if it has any.
+    /// The viscous stress of point `p` where the constitution's response is not at hand, if it has any.
     pub(crate) fn viscous_at(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Viscous> {
         self.damping.relative(points.material[p])?;
         self.viscous(model, points, p, &self.respond(model, points, p).ok()?)
+    }
+
+    /// `tau` and that viscous stress, Pa.
+    pub(crate) fn damped_at(&self, model: &Model<K, D>, points: &Points<D>, p: usize, tau: Symmetric) -> Symmetric {
+        self.viscous_at(model, points, p).map_or(tau, |viscous| viscous.beside(tau))
     }
 
     /// `tau` of the skeleton less what the water presses with at point `p`, Pa.
