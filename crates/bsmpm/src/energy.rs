@@ -208,7 +208,7 @@ impl Draft {
         flows.plastic = plastic;
         let mut damped = Exact::ZERO;
         if !model.damping.is_empty() {
-            let taken = |p: usize| found.trial.viscous_at(model, points, p).map_or(0.0, |viscous| viscous.dissipation);
+            let taken = |p: usize| found.trial.damping_takes(model, points, p).unwrap_or(0.0);
             damped = threads::sum(points.len(), |p| points.volume[p] * taken(p));
             flows.plastic += &damped;
         }

@@ -154,6 +154,9 @@ columns! {
         /// -  J-bar/J, J-bar the dilation that the stress has felt, under F-bar from its first step on; before that it
         ///   is 1
         dilation: Vec<f64>, "-", None, || 1.0;
+        /// -  b^e after smoothing by that before, a left Cauchy-Green tensor, in the last step, where damped points are
+        ///   smoothed; before that it is the identity
+        smoothing: Packed<D, Symmetric>, "-", None, || Symmetric::IDENTITY;
         /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that
         ///   it is 0
         gap: Vec<f64>, "-", None, || 0.0;
@@ -271,6 +274,12 @@ impl<const D: usize> Points<D> {
     #[inline]
     pub fn gap_of(&self, p: usize) -> f64 {
         self.gap.as_ref().map_or(0.0, |gap| gap[p])
+    }
+
+    /// What smoothing made of a point's elastic strain after the last step, as a left Cauchy-Green tensor.
+    #[inline]
+    pub fn smoothing_of(&self, p: usize) -> Symmetric {
+        self.smoothing.as_ref().map_or(Symmetric::IDENTITY, |smoothing| smoothing.at(p))
     }
 
     /// State of a point's law; its variables are the first ones.

@@ -132,6 +132,11 @@ impl Stabilisation {
         }
     }
 
+    /// Whether the elastic strain is smoothed after a step.
+    pub fn smooths(self) -> bool {
+        self.lowers() || self == Self::ModifiedFBar
+    }
+
     /// Whether dilations are averaged by splines of degree q - 1, and the elastic dilation is filtered where material
     /// flows.
     pub fn lowers(self) -> bool {

@@ -5,7 +5,7 @@ use super::place;
 use super::rigid;
 use super::site::{normal_of, places};
 use super::strip::{moves, with_body};
-use crate::case::{Acting, Base, Body, Case, Drain, Geometry, Initial, NamedMaterial, Site, Support};
+use crate::case::{Acting, Base, Body, Case, Drain, Geometry, Initial, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{AnalysisType, Side, Word};
@@ -29,7 +29,6 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     absorbed(case, record, report);
     shaken(case, report);
     thrown_back(case, report);
-    damped_in_flow(case, report);
     too_soon(case, record, report);
     stressed(case, record, report);
     timed(case, record, report);
@@ -167,23 +166,6 @@ fn shaken(case: &Case, report: &mut Report<'_>) {
 /// Crossings of a body by a wave in a step up to which no energy was made at a face in contact: none at 1.3, some at
 /// 2.6.
 const MOST_CROSSINGS: f64 = 2.0;
-
-/// What smoothing takes from a point's elastic strain in flow comes back as a strain, at whose rate damping carries a
-/// part of the stress.
-fn damped_in_flow(case: &Case, report: &mut Report<'_>) {
-    let flows = |named: &&NamedMaterial| named.retardation > 0.0 && named.material.yields();
-    let smooths = case.stabilisation.lowers() || case.stabilisation == Stabilisation::ModifiedFBar;
-    if let Some(named) = case.materials.iter().find(flows).filter(|_| smooths) {
-        report.warn(format!(
-            "material.{}.damping: where it flows fast, {}, which smooths the elastic strain after a step, is not shown to be \
-             right: a collapse of sand with 2 % at 5 Hz ran out 1, 12 and 14 % farther than without damping in steps of 1, .5 \
-             and .25 ms with consistent-f-bar, 5, 9 and 15 % less far with modified-f-bar, 1, 0 and 2 % less with f-bar; a \
-             slope that was shaken slipped 6 % less: method = \"f-bar\" in [stabilisation], or no damping of what flows",
-            named.name,
-            case.stabilisation.word()
-        ));
-    }
-}
 
 /// What meets a face in contact stops at the face's nodes first; in a step in which waves cross the whole body
 /// Newmark's formula throws the rest of it back with energy that it did not have.

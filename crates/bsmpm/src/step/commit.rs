@@ -162,6 +162,8 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     points.state = state;
     keep(model, &trial, &answers, points);
     let content = nodes.pores.as_ref().map_or(0.0, |pores| saved::save(model, pores, &trial, &pressures, points, halo));
+    let damped = nodes.inertia.is_some() && !model.damping.is_empty();
+    let before = (damped && model.stabilisation.smooths()).then(|| points.b_e.clone());
     let smoothed = match model.stabilisation {
         Stabilisation::ModifiedFBar => {
             smooth::average_b_e(model, shape, nodes, points, halo);
@@ -173,6 +175,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         }
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
     };
+    points.smoothing = before.map(|before| smooth::change(&before, &points.b_e));
     points.gap = gaps(model, points, &answers);
     Committed { u, advance: advance[0], smoothed, content, beside_fixed }
 }

@@ -1,20 +1,22 @@
-//! Kelvin-Voigt damping: beside the law's stress a viscous one, the elastic stiffness times the rate of elastic strain.
+//! Kelvin-Voigt damping: beside the law's stress a viscous one, the elastic stiffness times the rate of elastic
+//! strain.
 //!
-//! `τ_v = (β/Δt) D : (e - Δεᵖ)`, `e = ½ ln ΔF̄ ΔF̄ᵀ` the strain of the step, Δεᵖ what of it is plastic, D : Δεᵖ what
-//! the return took from the trial stress, and β the material's retardation time: a wave of the circular frequency ω has
-//! the damping ratio βω/2. By the mean rate of the step it takes energy in every step in which nothing flows, however
-//! long, and a motion at constant velocity or a rotation feels nothing of it. It comes half a step late, which raises
-//! the frequency by the share βω²Δt/4. Both strains are logarithms, as their difference is small where soil flows:
-//! ½ (ΔF̄ ΔF̄ᵀ - I) dilates by γ²/2 under a shear γ.
+//! `τ_v = (β/Δt) D : (e - Δεᵖ)`, `e = ½ ln ΔF̄ c ΔF̄ᵀ` the strain of the step (c: see below), Δεᵖ what of it is
+//! plastic, D : Δεᵖ what the return took from the trial stress, and β the material's retardation time: a wave of
+//! the circular frequency ω has the damping ratio βω/2. By the mean rate of the step it takes energy in every step
+//! in which nothing flows, however long, and a motion at constant velocity or a rotation feels nothing of it. It
+//! comes half a step late, which raises the frequency by the share βω²Δt/4. Both strains are logarithms, as their
+//! difference is small where soil flows: ½ (ΔF̄ ΔF̄ᵀ - I) dilates by γ²/2 under a shear γ.
 //!
 //! With the rate of all strain the stress would have no bound where material flows: the clay of
 //! `cases/shaken_slope.toml` slips .031 m with 5 % at 2 Hz by it, .270 m by that of elastic strain, .286 m without.
 //!
-//! What smoothing takes from the elastic strain after a step comes back as a strain in the next, at whose rate damping
-//! carries a part of the stress that the law should: the short collapse with 2 % at 5 Hz, steps of 1, .5 and .25 ms,
-//! has a run-out of .479, .504 and .532 m with consistent F-bar (.474, .452, .467 without damping), .435, .427, .405
-//! with modified F-bar (.458, .467, .476), .448, .443, .432 with F-bar (.455, .444, .442), .483, .520, .540 with none
-//! (.488, .535, .542). The rate would have to leave out what was smoothed, which the points would have to keep.
+//! What smoothing takes from the elastic strain after a step comes back as a strain in the next. It is no rate of
+//! that strain from the end of one step to that of the next, and the points keep it where they are damped and
+//! smoothed: `ΔF̄ c ΔF̄ᵀ` stands in the place of `ΔF̄ ΔF̄ᵀ`, c the smoothed bᵉ by that before. The short collapse
+//! with 2 % at 5 Hz, steps of 1, .5 and .25 ms, has a run-out of .454, .448 and .463 m with consistent F-bar (.474,
+//! .452, .467 without damping; .479, .504, .532 without c), .452, .467, .463 with modified F-bar (.458, .467, .476;
+//! .435, .427, .405).
 
 use crate::material::{MaterialError, Response, Tangent};
 use crate::model::Model;
@@ -31,8 +33,6 @@ pub struct Damping(Vec<f64>);
 pub struct Viscous {
     /// Pa
     pub tau: Symmetric,
-    /// J/m3  what it dissipates in the step per reference volume
-    pub dissipation: f64,
     elastic: Response, // to the strain of the step, by moduli times β/Δt
     share: f64,        // β/Δt
 }
@@ -65,18 +65,19 @@ impl Damping {
 }
 
 impl Viscous {
-    /// Under the deformation ΔF̄ of a step, with Lamé's moduli times β/Δt, where a return took `returned`, Pa, from the
-    /// trial stress, if it did, and β/Δt; a `gap` that was open before, as a logarithm of volume, is no strain.
+    /// Under the strain of a step as a left Cauchy-Green tensor, ΔF̄ c ΔF̄ᵀ, with Lamé's moduli times β/Δt, where a
+    /// return took `returned`, Pa, from the trial stress, if it did, and β/Δt; a `gap` that was open before, as a
+    /// logarithm of volume, is no strain.
     ///
     /// # Errors
     /// A step that is no strain.
     pub fn of(
-        dF: &Tensor,
+        strained: &Symmetric,
         lame: (f64, f64),
         (returned, share): (Option<Symmetric>, f64),
         gap: f64,
     ) -> Result<Self, MaterialError> {
-        let elastic = Response::elastic(&Symmetric::of(&(dF * dF.transpose())), lame)?;
+        let elastic = Response::elastic(strained, lame)?;
         let mut tau = elastic.tau();
         if let Some(returned) = returned {
             tau.0.iter_mut().zip(returned.0).for_each(|(tau, taken)| *tau -= taken * share);
@@ -84,8 +85,7 @@ impl Viscous {
         if gap > 0.0 {
             tau.0[..3].iter_mut().for_each(|normal| *normal += (lame.0 + lame.1 * (2.0 / 3.0)) * gap);
         }
-        let dissipation = tau.full().dot(&elastic.trial_strain().full());
-        Ok(Self { tau, dissipation, elastic, share })
+        Ok(Self { tau, elastic, share })
     }
 
     /// The stress beside `tau`, Pa.

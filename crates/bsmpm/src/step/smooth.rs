@@ -41,6 +41,18 @@ pub fn average_b_e<K, const D: usize>(
     points.b_e = averaged;
 }
 
+/// What smoothing made of elastic strains: of b^e before and after it the left Cauchy-Green tensor that leads from the
+/// one to the other, L^-1 b^e L^-T with the Cholesky factor L of that before; where nothing changed it is the identity.
+pub fn change<const D: usize>(before: &Packed<D, Symmetric>, after: &Packed<D, Symmetric>) -> Packed<D, Symmetric> {
+    let change = |p: usize| {
+        let (before, after) = (before.at(p), after.at(p));
+        let inverse = before.full().cholesky().and_then(|factor| factor.l().try_inverse());
+        let inverse = inverse.filter(|_| before != after)?;
+        Some(Symmetric::of(&(inverse * after.full() * inverse.transpose())))
+    };
+    threads::each(before.len(), |p| change(p).unwrap_or(Symmetric::IDENTITY)).into_iter().collect()
+}
+
 /// What the filter of consistent F-bar needs of a point's return.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlasticFlow {

@@ -173,7 +173,8 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     pub fn viscous(&self, model: &Model<K, D>, points: &Points<D>, p: usize, response: &Response) -> Option<Viscous> {
         let (lame, share) = (self.damping.lame(model, points, p)?, self.damping.relative(points.material[p])?);
         let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
-        Viscous::of(&dF_bar, lame, (response.returned(), share), points.gap_of(p)).ok()
+        let strained = K::push_forward(&dF_bar, &points.smoothing_of(p));
+        Viscous::of(&strained, lame, (response.returned(), share), points.gap_of(p)).ok()
     }
 
     /// `tau` and the viscous stress of point `p`, Pa, of the constitution's `response` there.
@@ -188,8 +189,17 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         self.viscous(model, points, p, response).map_or(tau, |viscous| viscous.beside(tau))
     }
 
+    /// What the viscous stress of point `p` takes in the step per reference volume, J/m3, if it has any.
+    pub(crate) fn damping_takes(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<f64> {
+        let viscous = self.viscous_at(model, points, p)?;
+        let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
+        let strained = K::push_forward(&dF_bar, &Symmetric::IDENTITY);
+        let strain = Response::elastic(&strained, (0.0, 0.0)).ok()?.trial_strain();
+        Some(viscous.tau.full().dot(&strain.full()))
+    }
+
     /// The viscous stress of point `p` where the constitution's response is not at hand, if it has any.
-    pub(crate) fn viscous_at(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Viscous> {
+    fn viscous_at(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Viscous> {
         self.damping.relative(points.material[p])?;
         self.viscous(model, points, p, &self.respond(model, points, p).ok()?)
     }

@@ -13,6 +13,7 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::Vector;
 use nalgebra::Matrix3;
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 const SPEED: f64 = 1e-7; // m/s, so that the block moves next to nothing over the grid
@@ -274,6 +275,40 @@ fn what_flows_is_not_damped() {
     assert!((damped[0] / plain[0] - 1.0).abs() <= 0.02, "{plain:?} {damped:?}");
     // A strain of the step that is no logarithm dilates in shear.
     assert!((damped[1] - plain[1]).abs() <= 0.02, "{plain:?} {damped:?}");
+}
+
+/// The mean viscous stress is the bulk modulus times the rate of the elastic dilation from the end of one step to that
+/// of the next, both before smoothing: what smoothing took and the next step's strain brings back is no rate.
+#[test]
+fn what_smoothing_takes_is_not_damped() {
+    const TIME: f64 = 0.05; // s
+    const DT: f64 = 0.05; // s
+    let elastic = Elastic { young: 100.0, poisson: 0.3 };
+    let bulk = elastic.young / (3.0 * (1.0 - 2.0 * elastic.poisson));
+    for method in [Stabilisation::FBar, Stabilisation::ModifiedFBar, Stabilisation::ConsistentFBar] {
+        let law = Material::MohrCoulomb(MohrCoulomb::new(elastic.clone(), 0.3, 0.1, 0.2));
+        let thrown = |x: &Vector<2>| [1.0 - 2.0 * x[1], 2.0 * x[0] - 3.0].into();
+        let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.5, 8, 2), axis(0.5, 6, 2)], law, Regime::Dynamic)
+            .body([2..5, 1..4], 3, 1.0, thrown)
+            .support(Support::fixed(1, false))
+            .stabilised(method);
+        scene.model.damping = vec![TIME];
+        let (mut before, mut off, mut largest, mut smoothed) = (BTreeMap::new(), 0.0_f64, 0.0_f64, 0.0_f64);
+        scene.march(DT, 0.4, |points, accepted| {
+            for p in 0..points.len() {
+                let taken = 0.5 * points.smoothing_of(p).full().determinant().ln();
+                let dilation = 0.5 * points.b_e.at(p).full().determinant().ln() - taken;
+                let jacobian = points.F.at(p).determinant() * points.dilation_of(p);
+                // The dilation that the stress has felt tells of smoothing as well, which came after the stress.
+                let mean = points.sigma.at(p).full().trace() / 3.0 * jacobian / taken.exp();
+                let rate = (dilation - before.insert(points.id[p], dilation).unwrap_or(0.0)) / accepted.dt;
+                off = off.max((mean - bulk * (dilation + TIME * rate)).abs());
+                (largest, smoothed) = (largest.max(bulk * TIME * rate.abs()), smoothed.max(taken.abs()));
+            }
+        });
+        println!("{method:?}: {off:.1e} of {largest:.3} Pa, smoothed by {smoothed:.1e}");
+        assert!(off <= 1e-9 * largest && (method == Stabilisation::FBar || smoothed > 1e-4));
+    }
 }
 
 /// Bodies that move and turn as if rigid keep their energy: strain alone is damped.
