@@ -3,7 +3,7 @@
 use super::law::Branch;
 use super::spectral::Spectrum;
 use super::{Flowed, MaterialError, Moduli};
-use crate::tensor::Symmetric;
+use crate::tensor::{Symmetric, Tensor};
 
 /// The response of one point, in the axes of the trial b; principal values are descending.
 #[derive(Clone, Copy, Debug)]
@@ -131,9 +131,10 @@ impl Response {
         }
     }
 
-    /// What the return took from the stress of the trial, Pa: `D : (ε_trial - εᵉ)`; `None` where there was none.
+    /// What the return took from the stress of the trial, Pa: `D : (ε_trial - εᵉ)`, D by the law's moduli; `None` where
+    /// there was none.
     pub fn returned(&self) -> Option<Symmetric> {
-        if let Some(trial) = self.unreturned() {
+        if let Some(trial) = self.unreturned().filter(|_| self.flowed.is_linear()) {
             let (trial, tau) = (trial.tau().0, self.tau().0);
             return Some(Symmetric(std::array::from_fn(|k| trial[k] - tau[k])));
         }
@@ -142,10 +143,21 @@ impl Response {
         (self.branch() != Branch::Elastic).then(|| self.trial.assemble(self.moduli.stress(plastic)))
     }
 
-    /// The response of material that does not yield, of this one's moduli, to the same trial: where this one yields and
-    /// its elasticity is linear.
-    pub fn unreturned(&self) -> Option<Self> {
-        let yields = self.branch() != Branch::Elastic && self.flowed.is_linear();
+    /// How that changes with a spatial gradient, Pa: what the bulk modulus after the return differs by from the law's
+    /// where elasticity is not linear takes its part of the mean stress.
+    pub fn change_of_returned(&self) -> Option<impl Fn(&Tensor) -> Tensor + use<>> {
+        let (trial, own) = (self.unreturned()?.tangent(), self.tangent());
+        let stiffer = self.moduli.bulk() / self.flowed.elastic_moduli(self.moduli).bulk() - 1.0;
+        Some(move |l: &Tensor| {
+            let tau = own.apply(l);
+            trial.apply(l) - tau - Tensor::identity() * (stiffer * tau.trace() / 3.0)
+        })
+    }
+
+    /// The response of linear material that does not yield, of this one's moduli, to the same trial, where this one
+    /// yields.
+    fn unreturned(&self) -> Option<Self> {
+        let yields = self.branch() != Branch::Elastic;
         yields.then(|| Self { tau: self.moduli.stress(self.trial.eps), flowed: Flowed::Elastic, ..*self })
     }
 

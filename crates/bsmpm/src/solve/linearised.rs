@@ -100,10 +100,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 K::working(&(change * inverse.transpose())) * volume
             };
             let viscous = trial.viscous(problem.model, points, p, &response);
-            let viscous = viscous.map(|viscous| {
-                let returned = response.unreturned().map(|trial| [trial.tangent(), tangent]);
-                (viscous.tau.full(), viscous.tangent(returned))
-            });
+            let viscous = viscous.map(|viscous| (viscous.tau.full(), viscous.tangent(response.change_of_returned())));
             moduli.push(K::Gradient::moduli(|k, l| match &viscous {
                 Some((tau, change)) => unit(k, l) + viscous_flux::<K, D>((tau, change), &inverse, (k, l)) * volume,
                 None => unit(k, l),

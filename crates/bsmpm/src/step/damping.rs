@@ -18,7 +18,7 @@
 //! .452, .467 without damping; .479, .504, .532 without c), .452, .467, .463 with modified F-bar (.458, .467, .476;
 //! .435, .427, .405).
 
-use crate::material::{MaterialError, Response, Tangent};
+use crate::material::{MaterialError, Response};
 use crate::model::Model;
 use crate::points::Points;
 use crate::step::inertia::Inertia;
@@ -97,11 +97,11 @@ impl Viscous {
 
     /// How the stress changes with a spatial gradient at the end of the step, Pa, where `returned` is how that changes
     /// which the return took.
-    pub fn tangent(&self, returned: Option<[Tangent; 2]>) -> impl Fn(&Tensor) -> Tensor + use<> {
+    pub fn tangent<R: Fn(&Tensor) -> Tensor>(&self, returned: Option<R>) -> impl Fn(&Tensor) -> Tensor + use<R> {
         let (elastic, share) = (self.elastic.tangent(), self.share);
         move |l| {
             let all = elastic.apply(l);
-            returned.as_ref().map_or(all, |[trial, tau]| all - (trial.apply(l) - tau.apply(l)) * share)
+            returned.as_ref().map_or(all, |returned| all - returned(l) * share)
         }
     }
 }

@@ -7,7 +7,7 @@ use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
-use bsmpm::material::{Branch, Elastic, Material, MohrCoulomb, Separation};
+use bsmpm::material::{Branch, CamClay, Elastic, Law, Material, MohrCoulomb, Separation};
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::quadrature::Quadrature;
@@ -17,6 +17,7 @@ use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::{Symmetric, Vector};
+use rayon::prelude::*;
 
 const METHODS: [Stabilisation; 6] = [
     Stabilisation::None,
@@ -90,6 +91,28 @@ fn the_product_is_the_derivative_of_the_forces() {
                 assert!(yielding > 0 && yielding < points, "both responses are seen: {yielding} of {points}");
             }
         }
+    }
+}
+
+/// Damped soil whose elasticity is linear, and some whose is not, after a step that smoothed it.
+#[test]
+fn the_viscous_stress_is_in_the_product() {
+    let clay = CamClay::new(Elastic { young: 1000.0, poisson: 0.3 }, [0.03, 0.15, 1.1, 52.0, 0.0]);
+    let pressed = (2.0 / 3.0 * clay.strain([-50.0; 3]).iter().sum::<f64>()).exp();
+    for clay in [None, Some(Material::CamClay(clay))] {
+        let mut scene = loaded::<PlaneStrain, 2>(Stabilisation::ConsistentFBar, Regime::Dynamic);
+        if let Some(clay) = clay {
+            scene.model.materials = vec![clay];
+            scene.points = scene.points.with_state(1);
+            scene.points.state.iter_mut().for_each(|state| state.par_rows_mut().for_each(|row| row[0] = 52.0));
+            scene.points.b_e.fill(Symmetric::IDENTITY.scaled(pressed));
+        }
+        let smoothed = |p| Symmetric([1.01, 0.99, 1.0, 0.003, 0.0, 0.0]).scaled(1.0 + 1e-3 * f64::from(p));
+        scene.points.smoothing = Some((0..scene.points.len() as u32).map(smoothed).collect());
+        scene.model.damping = vec![0.005];
+        let (error, yielding) = product_error(&scene);
+        println!("{error:e}, {yielding} of {} yield", scene.points.len());
+        assert!(error <= 1e-6 && yielding > 0 && yielding < scene.points.len(), "{error:e}"); // central differences
     }
 }
 
