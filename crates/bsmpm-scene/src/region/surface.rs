@@ -4,6 +4,9 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Parts of its size by which a surface may overlap itself: rounding of where its lines are cut.
 const ROUNDING: f64 = 1e-9;
+/// Parts of its width by which a line that is tried passes a corner or a crossing of edges: what single precision, in
+/// which files often are, makes touching parts overlap by is less.
+const BESIDE: f64 = 1e-5;
 
 /// Triangles, counter-clockwise seen from outside, and the bins of the plane by which a vertical line finds its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,27 +128,74 @@ impl Surface {
         cut
     }
 
-    /// Whether the lines through the triangles' insides enter and leave in turns.
+    /// Whether vertical lines enter and leave in turns.
+    ///
+    /// Seen from above the edges cut the plane into parts; within one a line meets the same triangles, in one order
+    /// unless two of them cross there. Wherever the order is wrong it is so beside a corner or beside a place where
+    /// two edges cross, which are the places that are tried. Overlaps that are thinner than `BESIDE` may stay.
     fn simple(&self) -> Result<(), String> {
-        let size = self.bounds[1][2] - self.bounds[0][2];
-        for [a, b, c] in self.triangles.iter().filter(|triangle| !is_wall(triangle)) {
-            for shares in [[1.0, 1.0, 1.0], [4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]] {
-                let [s, t, u] = shares.map(|share| share / shares.iter().sum::<f64>());
-                let at = [0, 1].map(|axis| s * a[axis] + t * b[axis] + u * c[axis]);
-                let (mut depth, mut last) = (0, f64::NEG_INFINITY);
-                for (z, crossing) in self.crossings(at) {
-                    if !(0..=1).contains(&depth) && z - last > ROUNDING * size {
-                        let [x, y] = at;
-                        return Err(format!(
-                            "near [{x:.6}, {y:.6}, {z:.6}] it intersects itself, or a part of it is turned inside out"
-                        ));
+        let height = self.bounds[1][2] - self.bounds[0][2];
+        let width = (0..2).map(|axis| self.bounds[1][axis] - self.bounds[0][axis]).fold(0.0, f64::max);
+        let beside = |at: [f64; 2], way: [f64; 2]| {
+            let length = way[0].hypot(way[1]);
+            [1.0, -1.0].map(|sign| [0, 1].map(|axis| at[axis] + sign * BESIDE * width * way[axis] / length))
+        };
+        let is_simple = |at: [f64; 2]| {
+            let (mut depth, mut last) = (0, f64::NEG_INFINITY);
+            for (z, crossing) in self.crossings(at) {
+                if !(0..=1).contains(&depth) && z - last > ROUNDING * height {
+                    let [x, y] = at;
+                    return Err(format!(
+                        "near [{x:.6}, {y:.6}, {z:.6}] it intersects itself, or a part of it is turned inside out"
+                    ));
+                }
+                (depth, last) = (depth - crossing, z);
+            }
+            Ok(())
+        };
+        for triangle in self.triangles.iter().filter(|triangle| !is_wall(triangle)) {
+            let middle = [0, 1].map(|axis| triangle.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0);
+            for corner in triangle {
+                let way = [0, 1].map(|axis| middle[axis] - corner[axis]);
+                beside([corner[0], corner[1]], way).into_iter().try_for_each(is_simple)?;
+            }
+        }
+        for (number, bin) in self.bins.iter().enumerate() {
+            let edges: Vec<[[f64; 2]; 2]> = bin.iter().flat_map(|&k| edges(&self.triangles[k as usize])).collect();
+            for (k, &one) in edges.iter().enumerate() {
+                for &other in &edges[..k] {
+                    let Some((at, ways)) = crossing(one, other) else { continue };
+                    if self.bin(1, at[1]) * self.count[0] + self.bin(0, at[0]) == number {
+                        ways.into_iter().flat_map(|way| beside(at, way)).try_for_each(is_simple)?;
                     }
-                    (depth, last) = (depth - crossing, z);
                 }
             }
         }
         Ok(())
     }
+}
+
+/// Edges of a triangle seen from above, of two triangles that share one those of one of them.
+fn edges(triangle: &[[f64; 3]; 3]) -> impl Iterator<Item = [[f64; 2]; 2]> {
+    let ends = (0..3).map(|k| [triangle[k], triangle[(k + 1) % 3]]);
+    let once = ends.filter(|[from, to]| from < to);
+    once.map(|ends| ends.map(|[x, y, _]| [x, y])).filter(|[from, to]| from != to)
+}
+
+/// Where two lines cross between their ends, and the middles of two neighbouring angles there.
+fn crossing(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> Option<([f64; 2], [[f64; 2]; 2])> {
+    let way = |[from, to]: [[f64; 2]; 2]| [to[0] - from[0], to[1] - from[1]];
+    let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+    let (u, v, between) = (way(one), way(other), way([one[0], other[0]]));
+    let (long, short) = (u[0].hypot(u[1]), v[0].hypot(v[1]));
+    let sine = cross(u, v);
+    let inside = |part: f64| ROUNDING < part && part < 1.0 - ROUNDING;
+    let [s, t] = [cross(between, v) / sine, cross(between, u) / sine];
+    let crosses = sine.abs() > ROUNDING * long * short && inside(s) && inside(t);
+    crosses.then(|| {
+        let at = [0, 1].map(|axis| one[0][axis] + s * u[axis]);
+        (at, [1.0, -1.0].map(|sign| [0, 1].map(|axis| u[axis] / long + sign * v[axis] / short)))
+    })
 }
 
 /// Whether every edge has as many triangles on one side as on the other.
@@ -304,6 +354,14 @@ mod tests {
         says([block.clone(), turned(block.clone())].concat(), "encloses no volume");
         says([block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(), "intersects itself");
         says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "turned inside out");
+        // Blocks with sides in common that overlap by little, and bars across each other, with sides in common and not.
+        says([block.clone(), cuboid([0.99, 0.0, 0.0], [1.99, 1.0, 1.0])].concat(), "intersects itself");
+        says([block.clone(), cuboid([0.3, 0.2, 0.99], [0.4, 0.5, 2.0])].concat(), "intersects itself");
+        let bar = cuboid([0.0, 1.45, 0.0], [30.0, 1.5, 1.0]);
+        for top in [1.0, 2.0] {
+            says([bar.clone(), cuboid([14.9, 0.0, 0.0], [15.1, 3.0, top])].concat(), "intersects itself");
+        }
+        says([bar, cuboid([14.9, 0.0, 0.4], [15.1, 3.0, 0.6])].concat(), "intersects itself");
         // Blocks that only touch are fine.
         assert!((surface([block, cuboid([0.0, 0.0, 1.0], [1.0, 1.0, 2.0])].concat()).unwrap().volume() - 2.0) < 1e-12);
     }
