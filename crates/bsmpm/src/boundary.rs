@@ -21,6 +21,7 @@ use crate::exact::Exact;
 use crate::grid::Grid;
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
+use crate::points::Points;
 use crate::tensor::Vector;
 use crate::water::crossed::Crossed;
 
@@ -92,11 +93,20 @@ pub struct Boundary<const D: usize> {
     /// Rigid bodies.
     pub rigid: Vec<RigidBody<D>>,
     /// Per material, parts of a cell that its points reach to each side at the start: .5 over their number along an
-    /// axis; half a cell where it is not told. For faces that material comes off.
+    /// axis; half a cell where it is not told. For faces that material comes off, and the water's level.
     pub reach: Vec<f64>,
 }
 
 impl<const D: usize> Boundary<D> {
+    /// m  how far point `p`, as it is deformed, reaches to each side along an axis.
+    pub fn reach_along(&self, grid: &Grid<D>, points: &Points<D>, p: usize, axis: usize) -> f64 {
+        let start = grid.locate(&(points.x[p] - points.u[p])).or_else(|| grid.locate(&points.x[p]));
+        let share = self.reach.get(usize::from(points.material[p])).copied().unwrap_or(0.5);
+        let half = start.map_or(Vector::zeros(), |cell| grid.cell_box(&cell).1 * share);
+        let F = points.F.at(p);
+        (0..D).map(|j| F[(axis, j)].abs() * half[j]).sum()
+    }
+
     /// The state of strips and loads at the start: no traction, every point at its place.
     pub fn surface(&self) -> Surface<D> {
         let at_rest = |strip: &Strip<D>| vec![Vector::zeros(); strip.points.len()];

@@ -2,7 +2,7 @@
 
 use super::{Body, Case};
 use crate::grid::GridSpec;
-use bsmpm::water::ambient::Ambient;
+use bsmpm::water::ambient::{Ambient, share_below};
 
 /// Still water.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,11 +37,16 @@ impl Case {
         Some(self.water.as_ref()?.table.table(x, 0.0)?.0)
     }
 
-    /// kg/m3  of a body's material at `at` (m, in the case's coordinates): saturated below the water table of time 0.
+    /// kg/m3  of a point of a body's material at `at` (m, in the case's coordinates): saturated as far as it lies below
+    /// the water table of time 0.
     pub(crate) fn density_at(&self, body: &Body, at: [f64; 3]) -> f64 {
-        let (named, height) = (&self.materials[body.material], at[self.grid.dims() - 1]);
-        let wet = named.saturated.filter(|_| self.table(at[0]).is_some_and(|table| height < table));
-        wet.or(named.density).unwrap_or(0.0)
+        let (named, up) = (&self.materials[body.material], self.grid.dims() - 1);
+        let density = named.density.unwrap_or(0.0);
+        let Some((saturated, table)) = named.saturated.zip(self.table(at[0])) else { return density };
+        let axis = &self.grid.axes[up];
+        let cell = axis.first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at[up]);
+        let reach = 0.5 * axis.cell(cell.min(axis.cells() - 1)) / body.points_per_cell as f64;
+        density + share_below(table - at[up], reach) * (saturated - density)
     }
 
     /// Pa  weight of a body vertically above `at` (m, in the case's coordinates) under the acceleration `g` (m/s2),

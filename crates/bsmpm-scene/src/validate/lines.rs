@@ -6,6 +6,7 @@
 //! figures.
 
 mod ends;
+mod faces;
 
 use crate::case::{Case, NamedMaterial};
 use crate::grid::Line;
@@ -42,9 +43,11 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     }
     let mut found = FoundLine::default();
     if case.grid.dims() == 2 {
-        interfaces(case, &mut found); // of a solid see `solid`
+        interfaces(case, &mut found);
         ends::segments(case, &mut found);
         ends::corners(case, &mut found);
+    } else {
+        faces::interfaces(case, &mut found);
     }
     ends::plates(case, &mut found);
     for (table, number, message) in std::mem::take(&mut found.narrow) {
@@ -114,7 +117,7 @@ fn undrained_with_friction<'a>(case: &Case, record: &'a Record) -> Option<&'a st
 /// The first line of the grid's own knots across which strains may jump.
 fn own(case: &Case) -> Option<(usize, usize)> {
     let along = |axis: usize| case.grid.lines[axis].iter().map(move |line| (axis, line));
-    let found = [0, 1].into_iter().flat_map(along).find(|(_, line)| line.multiplicity >= case.grid.order)?;
+    let found = (0..case.grid.dims()).flat_map(along).find(|(_, line)| line.multiplicity >= case.grid.order)?;
     Some((found.0, found.1.breakpoint))
 }
 
@@ -173,22 +176,25 @@ fn interfaces(case: &Case, found: &mut FoundLine) {
             let Some((at, pair, ratios)) = unlike(case, &edge) else { continue };
             let [a, b] = [pair.0, pair.1].map(|material| &case.materials[material]);
             if let Some(line) = line {
-                let reason = format!("{} and {} meet there, and strains jump", a.name, b.name);
-                found.lines.entry(line).or_insert(reason);
+                found.lines.entry(line).or_insert_with(|| told_to_meet(a, b));
             }
             let averages = case.stabilisation.averages();
-            if let Some(doubt) = doubt([a, b], (line.is_some(), averages), (at, ratios)) {
+            if let Some(doubt) = doubt([a, b], (line.is_some(), averages), (&at, ratios)) {
                 found.doubts.entry(format!("{} {}", a.name, b.name)).or_insert(doubt);
             }
         }
     }
 }
 
+fn told_to_meet(a: &NamedMaterial, b: &NamedMaterial) -> String {
+    format!("{} and {} meet there, and strains jump", a.name, b.name)
+}
+
 /// What is doubtful about an interface of two materials whose moduli and densities have these ratios.
 fn doubt(
     [a, b]: [&NamedMaterial; 2],
     (on_line, averages): (bool, bool),
-    (at, [moduli, densities]): ([f64; 2], [f64; 2]),
+    (at, [moduli, densities]): (&[f64], [f64; 2]),
 ) -> Option<String> {
     let (a, b, yields) = (&a.name, &b.name, [a, b].iter().any(|named| named.material.yields()));
     if on_line {

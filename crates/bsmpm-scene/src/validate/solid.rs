@@ -1,6 +1,6 @@
 //! What has no meaning in three dimensions yet, and what has none in a plane.
 
-use crate::case::{Body, Case, FaceSupport, Support};
+use crate::case::{Case, FaceSupport, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Geometry, Measurement, Side, Word};
@@ -123,18 +123,5 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
             estimate.active,
             estimate.bytes as f64 / 1e9
         ));
-    }
-    let stiffness = |body: &Body| case.materials[body.material].material.elastic().young;
-    let cell = |axis: usize| case.grid.axes[axis].longest();
-    let meet = |a: &Body, b: &Body| {
-        let [a, b] = [a, b].map(|body| body.region.corners());
-        (0..3).all(|axis| a[0][axis] <= b[1][axis] + cell(axis) && b[0][axis] <= a[1][axis] + cell(axis))
-    };
-    let pairs = || case.bodies.iter().enumerate().flat_map(|(k, a)| case.bodies[..k].iter().map(move |b| (a, b)));
-    if case.grid.order > 1 && pairs().any(|(a, b)| stiffness(a) != stiffness(b) && meet(a, b)) {
-        report.warn(
-            "grid.c0_lines: of a solid no line is placed where bodies of unlike stiffness meet: stress there is wrong, up to \
-             by tens of per cent, within about three cells; repeat breakpoints by knots",
-        );
     }
 }

@@ -79,6 +79,21 @@ fn submerged_level_ground_has_its_buoyant_weight_and_rests() {
     }
 }
 
+/// Points that the level cuts are wet as far as they lie below it.
+#[test]
+fn the_ground_rests_with_its_weight_wherever_the_level_cuts_points() {
+    let reaction = "[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n";
+    let scratch = Scratch::with_case(&(GROUND.to_owned() + reaction + TIGHT));
+    for level in [6.55, 7.0, 7.2] {
+        let set = format!("water.level={level}");
+        scratch.mpirun(1, &["case.toml", "-q", "-o", "out", "--force", "--set", &set]).expect(0);
+        let found = at(&history(&scratch.path("out")), "reaction-y", 1.0);
+        let weight = 4.0 * (17_000.0 * (9.0 - level) + (20_000.0 - 9810.0) * (level - 2.0));
+        println!("level {level} m: {found} of {weight} N");
+        assert!((found / weight - 1.0).abs() < 1e-9, "{level}: {found} {weight}");
+    }
+}
+
 /// The same points, stresses and displacements, of a cut slope below water and of one of buoyant weight.
 #[test]
 fn a_submerged_slope_is_one_of_buoyant_weight() {

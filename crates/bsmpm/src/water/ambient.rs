@@ -69,6 +69,14 @@ impl Ambient {
     }
 }
 
+/// Share of a point below a table that is `above` (m) its middle, which reaches `reach` (m) up and down.
+pub fn share_below(above: f64, reach: f64) -> f64 {
+    match above.abs() < reach {
+        true => 0.5 + above / (2.0 * reach),
+        false => f64::from(above > 0.0),
+    }
+}
+
 /// The height of rows of time and height, at time `t`.
 fn level(rows: &[(f64, f64)], t: f64) -> Option<f64> {
     let (first, last) = rows.first().zip(rows.last())?;
@@ -96,14 +104,15 @@ impl<'a> StillWater<'a> {
         table.map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(0.0))
     }
 
-    /// N  force of the water on point `p`: -J V0 grad p_a, and, unless its mass `follows`, what the water weighs that
-    /// its pores have taken up or given off. Nothing above the water table.
-    pub fn force<const D: usize>(&self, points: &Points<D>, p: usize, follows: bool) -> Vector<D> {
-        let (x, volume) = (&points.x[p], points.volume[p]);
+    /// N  force of the water on point `p`, which reaches `reach` (m) up and down: -J V0 grad p_a, and, unless its mass
+    /// `follows`, what the water weighs that its pores have taken up or given off, of what is below the water table.
+    pub fn force<const D: usize>(&self, points: &Points<D>, (p, reach): (usize, f64), follows: bool) -> Vector<D> {
+        let x = &points.x[p];
         let mut force = Vector::zeros();
-        if let Some((height, slope)) = self.ambient.table(x[0], self.t)
-            && x[D - 1] < height
-        {
+        let Some((height, slope)) = self.ambient.table(x[0], self.t) else { return force };
+        let below = share_below(height - x[D - 1], reach);
+        if below > 0.0 {
+            let volume = points.volume[p] * below;
             if slope != 0.0 {
                 force[0] = -self.unit_weight * slope * volume * points.F.at(p).determinant();
             }
@@ -146,7 +155,7 @@ mod tests {
         let seed = Seed { id: 0, material: 0, x, volume: 0.25, mass: 0.25 * 20.0 / 9.81, v };
         let points = Points::<2>::from_seeds([seed], false);
         let weight = Vector::<2>::new(0.0, -9.81) * points.mass[0];
-        let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, 0, false);
+        let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, (0, 0.0), false);
         let (down, into) = (Vector::<2>::new(-beta.cos(), -beta.sin()), Vector::<2>::new(beta.sin(), -beta.cos()));
         let factor = phi.tan() * acts.dot(&into) / acts.dot(&down);
         assert!((factor - 0.8552).abs() < 5e-5, "{factor}");

@@ -35,12 +35,8 @@ pub(super) fn gaps<const D: usize>(
             continue;
         }
         let clear = |p: usize| {
-            let start = grid.locate(&(points.x[p] - points.u[p])).unwrap_or(cell);
-            let share = boundary.reach.get(usize::from(points.material[p])).copied().unwrap_or(0.5);
-            let (half, F) = (grid.cell_box(&start).1 * share, points.F.at(p));
-            let reach: f64 = (0..D).map(|j| F[(axis, j)].abs() * half[j]).sum();
             let from_face = if upper { knots.length() - points.x[p][axis] } else { points.x[p][axis] };
-            from_face - reach
+            from_face - boundary.reach_along(grid, points, p, axis)
         };
         let least = patch.points.clone().map(clear).fold(f64::INFINITY, f64::min).max(0.0);
         let least = if least < ROUNDING * face_cell(grid, axis, upper) { 0.0 } else { least };
