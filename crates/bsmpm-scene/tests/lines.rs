@@ -97,6 +97,35 @@ fn an_interface_inside_cells_is_warned_of() {
 }
 
 #[test]
+fn bodies_of_a_solid_meet_on_planes_of_the_grid_or_are_warned_of() {
+    let solid = |boxes: [&str; 2]| {
+        let [soft, stiff] = boxes;
+        let text = LAYERS
+            .replace("plane-strain", "solid")
+            .replace("lower = [0.0, 0.0]\n    upper = [8.0, 6.0]", "lower = [0, 0, 0]\n    upper = [8, 2, 6]")
+            .replace("box = { lower = [0.0, 0.0], upper = [8.0, 2.0] }", soft)
+            .replace("box = { lower = [0.0, 2.0], upper = [8.0, 4.0] }", stiff)
+            .replace("[0.0, -9.81]", "[0, 0, -9.81]")
+            .replace("right = \"roller\"", "right = \"roller\"\n    front = \"roller\"\n    back = \"roller\"");
+        let case = case(&text);
+        let lines = |axis: usize| case.grid.lines[axis].iter().map(|line| line.breakpoint).collect::<Vec<_>>();
+        let inside = case.warnings.iter().any(|told| told.contains("soft meet inside cells"));
+        ([0, 1, 2].map(lines), inside)
+    };
+    let lower = "box = { lower = [0, 0, 0], upper = [8, 2, 2] }";
+    let above = "box = { lower = [0, 0, 2], upper = [8, 2, 4] }";
+    assert_eq!(solid([lower, above]), ([vec![], vec![], vec![4]], false));
+    // A block beside a step of the ground meets it from the side, too.
+    let step =
+        "extrude = { polygon = [[0, 0], [8, 0], [8, 2], [4, 2], [4, 4], [0, 4]], along = \"y\", from = 0, to = 2 }";
+    let beside = "box = { lower = [4, 0, 2], upper = [6, 1, 3] }";
+    assert_eq!(solid([step, beside]), ([vec![8], vec![], vec![4]], false));
+    let between = lower.replace("8, 2, 2]", "8, 2, 2.2]");
+    assert_eq!(solid([&between, &above.replace("[0, 0, 2]", "[0, 0, 2.2]")]), ([vec![], vec![], vec![]], true));
+    assert_eq!(solid([lower, &above.replace("[0, 0, 2]", "[0, 0, 2.5]")]), ([vec![], vec![], vec![]], false));
+}
+
+#[test]
 fn strips_and_loads_end_on_lines_where_the_surface_goes_on() {
     let alike = LAYERS.replace("young = 1e7", "young = 1e6");
     let strip = format!("{alike}{STRIP}");
