@@ -367,6 +367,33 @@ fn drains_that_feed_the_ground_are_warned_of() {
     assert!(warned(SEEPING, &[permeable, "water.level=1.0"]).is_empty());
 }
 
+/// Permeable ground that no drain lies on, of its own or of what it touches.
+#[test]
+fn ground_that_its_water_cannot_leave_is_warned_of() {
+    let case = include_str!("../../../../cases/validation/terzaghi.toml");
+    let wide = ["grid.upper=[0.5, 1.0]", "drain.0={ name = \"top\", from = [0.0, 1.0], to = [0.1, 1.0] }"];
+    let column = |k: usize, [left, right]: [f64; 2], material: &str| {
+        let shape = format!("box = {{ lower = [{left}, 0.0], upper = [{right}, 1.0] }}, points_per_cell = 3");
+        format!("body.{k}={{ material = \"{material}\", {shape} }}")
+    };
+    let warned = |set: &[&str]| {
+        let warnings = valid(case, set).warnings;
+        warnings.into_iter().filter(|warning| warning.contains("no water leaves")).collect::<Vec<_>>()
+    };
+    assert!(warned(&[]).is_empty());
+    assert!(warned(&["drain=[]"])[0].starts_with("drain: there is none"));
+    let apart = column(1, [0.3, 0.4], "clay");
+    let found = warned(&[&wide[..], &[&apart]].concat());
+    assert!(found.len() == 1 && found[0].starts_with("body.1: no drain is on it"), "{found:?}");
+    let beside = [column(1, [0.3, 0.4], "clay"), column(2, [0.1, 0.3], "clay")];
+    assert!(warned(&[&wide[..], &[&beside[0], &beside[1]]].concat()).is_empty());
+    let tight =
+        "material.tight={ model = \"hencky\", young = 1e6, poisson = 0.0, drainage = \"undrained\", porosity = 0.5 }";
+    let behind = [tight, &column(1, [0.3, 0.4], "clay"), &column(2, [0.1, 0.3], "tight")];
+    let found = warned(&[&wide[..], &behind].concat());
+    assert!(found.len() == 1 && found[0].starts_with("body.1: no drain is on it"), "{found:?}");
+}
+
 #[test]
 fn a_body_spins_about_its_place() {
     let case = set(FULL, &["body.2.spin={ rate = 2.0, about = [\"1 m\", 2.0] }"]).expect("a valid case");

@@ -1,6 +1,6 @@
-//! What crosses a surface: two that say different things of one part of it, and more than the ground takes.
+//! What crosses a surface: two that say different things of one part of it, more than the ground takes, and nothing.
 
-use crate::case::{Acting, Case, DrainSite, Face, Flow, LoadedLine, Plate, Site};
+use crate::case::{Acting, Case, Drain, DrainSite, Face, Flow, LoadedLine, Plate, Site};
 use crate::record::Record;
 use crate::report::Report;
 use crate::validate::side::side;
@@ -11,6 +11,9 @@ use bsmpm::water::flow::{Given, Soil};
 /// Parts of a cell by which surfaces may be apart and still be one, and by which they overlap at least to be told.
 const APART: f64 = 0.05;
 const OVERLAP: f64 = 0.25;
+
+/// Parts along each axis of a face of the grid in which it is looked for ground.
+const PARTS_OF_FACE: usize = 64;
 
 /// A surface that water crosses, with what is given there: a pressure, or else a rate.
 struct Crossing<'a> {
@@ -29,7 +32,8 @@ enum SurfacePart {
     Plate(Plate),
 }
 
-/// Refuses surfaces that contradict each other, and warns of inflows that the ground cannot take.
+/// Refuses surfaces that contradict each other, and warns of inflows that the ground cannot take, and of ground that
+/// nothing leaves.
 pub(super) fn check(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
     let crossings = all(case, flow, root);
     for (number, one) in crossings.iter().enumerate() {
@@ -40,6 +44,41 @@ pub(super) fn check(case: &Case, flow: &Flow, root: &Record, report: &mut Report
         }
     }
     lifted(case, flow, report);
+    closed(case, flow, report);
+}
+
+/// Ground of the start that its water cannot leave: permeable bodies that touch each other, with no drain on any. Those
+/// whose rectangles touch are taken to.
+fn closed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
+    let flows =
+        |body: usize| flow.soils[case.bodies[body].material].as_ref().is_some_and(|of| of.permeability.is_some());
+    let mut left: Vec<usize> = (0..case.bodies.len()).filter(|&body| flows(body) && case.is_there(body, 0.0)).collect();
+    if flow.drains.is_empty() && !left.is_empty() {
+        report.warn("drain: there is none, and no water leaves the ground; give [[drain]] surface = true, or face");
+        return;
+    }
+    let near = 0.5 * case.grid.shortest();
+    let touch = |one: usize, other: usize| {
+        let [a, b] = [one, other].map(|body| case.bodies[body].region.corners());
+        (0..case.grid.dims()).all(|axis| a[0][axis] <= b[1][axis] + near && b[0][axis] <= a[1][axis] + near)
+    };
+    while !left.is_empty() {
+        let mut joined = vec![left.remove(0)];
+        let mut next = 0;
+        while let Some(&one) = joined.get(next) {
+            joined.extend(left.extract_if(.., |other| touch(one, *other)));
+            next += 1;
+        }
+        let is_on = |at: &[f64; 3]| is_beside(case, at, |body| joined.contains(&body));
+        if !flow.drains.iter().any(|drain| places(drain, case).iter().any(is_on)) {
+            let all: Vec<String> = joined.iter().map(|body| format!("body.{body}")).collect();
+            report.warn(format!(
+                "{}: no drain is on it, nor on permeable ground that it touches: no water leaves it, and excess pressure stays \
+                 there; give [[drain]] surface = true, or along it, or drainage = \"undrained\" if that is meant",
+                all.join(", ")
+            ));
+        }
+    }
 }
 
 fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<Crossing<'a>> {
@@ -173,6 +212,38 @@ fn lifted(case: &Case, flow: &Flow, report: &mut Report<'_>) {
                  rain, or a lower rate",
                 case.materials[material].name
             ));
+        }
+    }
+}
+
+/// Whether a body that is `wanted`, by its number, is at a place.
+pub(super) fn is_beside(case: &Case, at: &[f64; 3], wanted: impl Fn(usize) -> bool) -> bool {
+    let mut bodies = case.bodies.iter().enumerate().filter(|(number, _)| wanted(*number));
+    bodies.any(|(_, body)| place::is_at(std::slice::from_ref(body), &case.grid, *at))
+}
+
+/// m  where a drain is, in the case's coordinates
+pub(super) fn places(drain: &Drain, case: &Case) -> Vec<[f64; 3]> {
+    match &drain.site {
+        DrainSite::Lines(lines) => lines.iter().flatten().map(|[x, y]| [*x, *y, 0.0]).collect(),
+        DrainSite::Circle { center, radius } => place::ring(*center, *radius).map(|[x, y]| [x, y, 0.0]).collect(),
+        DrainSite::Plate(plate) => site::places(Site::Plate(*plate), &case.grid),
+        DrainSite::Face(Face { axis, upper }) => {
+            let ends = [case.grid.lower(), case.grid.upper()];
+            let middle = |axis: usize, k: usize| {
+                let count = PARTS_OF_FACE as f64;
+                ends[0][axis] + (ends[1][axis] - ends[0][axis]) * (k as f64 + 0.5) / count
+            };
+            let across: Vec<usize> = (0..case.grid.dims()).filter(|other| other != axis).collect();
+            let place = |number: usize| {
+                let mut at = ends[usize::from(*upper)];
+                for (which, &other) in across.iter().enumerate() {
+                    at[other] = middle(other, number / PARTS_OF_FACE.pow(which as u32) % PARTS_OF_FACE);
+                }
+                at
+            };
+            let all = (0..PARTS_OF_FACE.pow(across.len() as u32)).map(place);
+            all.filter(|at| place::is_at(&case.bodies, &case.grid, *at)).collect()
         }
     }
 }

@@ -1,12 +1,12 @@
 //! What is not shown to be right together with water that flows, and what is doubtful with it.
 
-use crate::case::{Acting, Body, Case, Drain, DrainSite, Face, Flow, Initial, Site, Stage, Support};
+use crate::case::{Acting, Body, Case, Drain, DrainSite, Flow, Initial, Stage, Support};
 use crate::grid::GridAxis;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
+use crate::validate::flow::crossing::{is_beside, places};
 use crate::validate::side::side;
-use crate::validate::{place, site};
 use crate::words::{AnalysisType, Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
@@ -36,9 +36,6 @@ pub const HELD_WATER: &str = "pore pressures stay as they are at that time; thos
 /// Load over stiffness up to which ground one cell across was shown to be right; under .5 runs ended early.
 const SHOWN_NARROW: f64 = 0.2;
 
-/// Parts along each axis of a face of the grid in which it is looked for ground.
-const PARTS_OF_FACE: usize = 64;
-
 /// What the whole case says of a flow: refusals of what is not shown to be right with it.
 pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let consolidates = case.analysis.kind == AnalysisType::Consolidation;
@@ -64,7 +61,7 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     acting(case, root, report);
     divided(flow, root, report);
     timed(case, root, report);
-    drained(case, flow, report);
+    weighed(case, report);
     ponds(case, flow, report);
     weightless(case, flow, report);
     pressed(case, flow, report);
@@ -249,12 +246,6 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
     }
 }
 
-/// Whether a body that is `wanted`, by its number, is at a place.
-fn is_beside(case: &Case, at: &[f64; 3], wanted: impl Fn(usize) -> bool) -> bool {
-    let mut bodies = case.bodies.iter().enumerate().filter(|(number, _)| wanted(*number));
-    bodies.any(|(_, body)| place::is_at(std::slice::from_ref(body), &case.grid, *at))
-}
-
 /// Warns of drains whose ground goes with what a stage removes.
 fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) {
     let before = case.just_before(stage.at);
@@ -356,12 +347,8 @@ fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
 }
 
-/// Water that can leave nowhere, or begins without the pressure of its own weight.
-fn drained(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let permeable = flow.soils.iter().flatten().any(|soil| soil.permeability.is_some());
-    if permeable && flow.drains.is_empty() {
-        report.warn("drain: there is none, and no water leaves the ground; give [[drain]] surface = true, or face");
-    }
+/// Water that begins without the pressure of its own weight.
+fn weighed(case: &Case, report: &mut Report<'_>) {
     if case.gravity.is_some() && case.water.is_none() {
         report.warn(
             "water: there is none that is still, and the pore pressure at the start is zero everywhere: what the water weighs \
@@ -453,32 +440,6 @@ fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
                  ground: where it stands there give [water] a level (level_path, line, line_path) up to it, and leave \
                  head out; head is that of a pipe or well"
             ));
-        }
-    }
-}
-
-/// m  where a drain is, in the case's coordinates
-fn places(drain: &Drain, case: &Case) -> Vec<[f64; 3]> {
-    match &drain.site {
-        DrainSite::Lines(lines) => lines.iter().flatten().map(|[x, y]| [*x, *y, 0.0]).collect(),
-        DrainSite::Circle { center, radius } => place::ring(*center, *radius).map(|[x, y]| [x, y, 0.0]).collect(),
-        DrainSite::Plate(plate) => site::places(Site::Plate(*plate), &case.grid),
-        DrainSite::Face(Face { axis, upper }) => {
-            let ends = [case.grid.lower(), case.grid.upper()];
-            let middle = |axis: usize, k: usize| {
-                let count = PARTS_OF_FACE as f64;
-                ends[0][axis] + (ends[1][axis] - ends[0][axis]) * (k as f64 + 0.5) / count
-            };
-            let across: Vec<usize> = (0..case.grid.dims()).filter(|other| other != axis).collect();
-            let place = |number: usize| {
-                let mut at = ends[usize::from(*upper)];
-                for (which, &other) in across.iter().enumerate() {
-                    at[other] = middle(other, number / PARTS_OF_FACE.pow(which as u32) % PARTS_OF_FACE);
-                }
-                at
-            };
-            let all = (0..PARTS_OF_FACE.pow(across.len() as u32)).map(place);
-            all.filter(|at| place::is_at(&case.bodies, &case.grid, *at)).collect()
         }
     }
 }
