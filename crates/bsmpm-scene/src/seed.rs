@@ -197,10 +197,11 @@ impl Body {
         vector([[1, 2], [2, 0], [0, 1]].map(turned))
     }
 
-    /// kg/m3  at a place, m from the grid's lower corner.
-    fn density<const N: usize>(&self, case: &Case, x: [f64; N]) -> f64 {
+    /// kg/m3  of a point, whose place is in m from the grid's lower corner.
+    fn density<const N: usize>(&self, case: &Case, CellPlace { x, area }: CellPlace<N>) -> f64 {
         let lower = case.grid.lower();
-        case.density_at(self, std::array::from_fn(|axis| lower[axis] + x.get(axis).unwrap_or(&0.0)))
+        let at = std::array::from_fn(|axis| lower[axis] + x.get(axis).unwrap_or(&0.0));
+        case.density_at(self, at, area)
     }
 
     fn seed<K: Kinematics<D>, const D: usize, const N: usize>(
@@ -216,7 +217,7 @@ impl Body {
             material: self.material as u16,
             x,
             volume,
-            mass: self.density(case, place.x) * volume,
+            mass: self.density(case, place) * volume,
             v: self.velocity.map_or(Vector::zeros(), vector) + self.spun(case, place.x),
         }
     }

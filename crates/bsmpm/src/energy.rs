@@ -344,7 +344,7 @@ fn add_water<K: Kinematics<D>, const D: usize>(
     let (Some(before), Some(after)) = (model.still_water(t), model.still_water(t + dt)) else { return };
     let work = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| {
         let follows = model.follows_water(points, p);
-        let point = (p, model.boundary.reach_along(&model.grid, points, p, D - 1));
+        let point = (p, model.span(points, p));
         let [before, after] = [before, after].map(|water| water.force(points, point, follows).dot(&Vector::from(du)));
         [0.5 * (before + after), -0.5 * (after - before)]
     });

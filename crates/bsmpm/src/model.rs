@@ -16,7 +16,7 @@ use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
-use crate::water::ambient::{Ambient, StillWater};
+use crate::water::ambient::{Ambient, Span, StillWater};
 use crate::water::flow::{Flow, Motion};
 use std::borrow::Cow;
 use std::marker::PhantomData;
@@ -209,6 +209,17 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         strips.iter_mut().zip(resting).filter(|(_, resting)| **resting).for_each(|(strip, _)| strip.penalty = 0.0);
         model.water.iter_mut().flat_map(|water| &mut water.flow).for_each(|flow| flow.motion = Motion::Held);
         model
+    }
+
+    /// How far point `p`, as it is deformed, spans up and down.
+    pub fn span(&self, points: &Points<D>, p: usize) -> Span {
+        let start = points.x[p] - points.u[p];
+        let told = self.boundary.reach.get(usize::from(points.material[p])).zip(self.grid.locate(&start));
+        told.map_or_else(Span::default, |(share, cell)| {
+            let whole = (self.grid.cell_box(&cell).1 * (2.0 * share)).product() * K::weight(&start);
+            let reach = self.boundary.reach_along(&self.grid, points, p, D - 1);
+            Span { reach, filled: points.volume[p] / whole }
+        })
     }
 
     /// What tells how far the points reach.

@@ -1,8 +1,8 @@
 //! Water in the ground.
 
 use super::{Body, Case};
-use crate::grid::GridSpec;
-use bsmpm::water::ambient::{Ambient, share_below};
+use crate::grid::{GridAxis, GridSpec};
+use bsmpm::water::ambient::{Ambient, Span};
 
 /// Still water.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,16 +37,20 @@ impl Case {
         Some(self.water.as_ref()?.table.table(x, 0.0)?.0)
     }
 
-    /// kg/m3  of a point of a body's material at `at` (m, in the case's coordinates): saturated as far as it lies below
-    /// the water table of time 0.
-    pub(crate) fn density_at(&self, body: &Body, at: [f64; 3]) -> f64 {
-        let (named, up) = (&self.materials[body.material], self.grid.dims() - 1);
+    /// kg/m3  of a point of a body's material at `at` (m, in the case's coordinates), of this volume (m^dimension):
+    /// saturated as far as it lies below the water table of time 0.
+    pub(crate) fn density_at(&self, body: &Body, at: [f64; 3], volume: f64) -> f64 {
+        let named = &self.materials[body.material];
         let density = named.density.unwrap_or(0.0);
         let Some((saturated, table)) = named.saturated.zip(self.table(at[0])) else { return density };
-        let axis = &self.grid.axes[up];
-        let cell = axis.first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at[up]);
-        let reach = 0.5 * axis.cell(cell.min(axis.cells() - 1)) / body.points_per_cell as f64;
-        density + share_below(table - at[up], reach) * (saturated - density)
+        let part = |(axis, at): (&GridAxis, f64)| {
+            let cell = axis.first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at);
+            axis.cell(cell.min(axis.cells() - 1)) / body.points_per_cell as f64
+        };
+        let parts: Vec<f64> = self.grid.axes.iter().zip(at).map(part).collect();
+        let up = parts.len() - 1;
+        let span = Span { reach: 0.5 * parts[up], filled: volume / parts.iter().product::<f64>() };
+        density + span.share_below(table - at[up]) * (saturated - density)
     }
 
     /// Pa  weight of a body vertically above `at` (m, in the case's coordinates) under the acceleration `g` (m/s2),

@@ -79,18 +79,18 @@ fn submerged_level_ground_has_its_buoyant_weight_and_rests() {
     }
 }
 
-/// Points that the level cuts are wet as far as they lie below it.
+/// Points that the level cuts are wet as far as they lie below it, also where the surface cuts their cells.
 #[test]
 fn the_ground_rests_with_its_weight_wherever_the_level_cuts_points() {
     let reaction = "[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n";
-    let scratch = Scratch::with_case(&(GROUND.to_owned() + reaction + TIGHT));
-    for level in [6.55, 7.0, 7.2] {
-        let set = format!("water.level={level}");
-        scratch.mpirun(1, &["case.toml", "-q", "-o", "out", "--force", "--set", &set]).expect(0);
+    for (top, level) in [(9.0, 6.55), (9.0, 7.2), (8.9, 8.9), (8.8, 8.4)] {
+        let ground = GROUND.replace(", 9]", &format!(", {top}]")) + reaction + TIGHT;
+        let scratch = Scratch::with_case(&changed(&ground, "level = 12.0", &format!("level = {level}")));
+        scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
         let found = at(&history(&scratch.path("out")), "reaction-y", 1.0);
-        let weight = 4.0 * (17_000.0 * (9.0 - level) + (20_000.0 - 9810.0) * (level - 2.0));
-        println!("level {level} m: {found} of {weight} N");
-        assert!((found / weight - 1.0).abs() < 1e-9, "{level}: {found} {weight}");
+        let weight = 4.0 * (17_000.0 * (top - level) + (20_000.0 - 9810.0) * (level - 2.0));
+        println!("top {top} m, level {level} m: {found} of {weight} N");
+        assert!((found / weight - 1.0).abs() < 1e-9, "{top}, {level}: {found} {weight}");
     }
 }
 

@@ -399,8 +399,7 @@ fn external_force<K: Kinematics<D>, const D: usize>(
     }
     if let Some(water) = model.still_water(t) {
         let force = halo.sum(&transfer::to_nodes(shape, |p| {
-            let reach = model.boundary.reach_along(&model.grid, points, p, D - 1);
-            <[f64; D]>::from(water.force(points, (p, reach), model.follows_water(points, p)))
+            <[f64; D]>::from(water.force(points, (p, model.span(points, p)), model.follows_water(points, p)))
         }));
         f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
     }

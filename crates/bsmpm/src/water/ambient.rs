@@ -69,11 +69,24 @@ impl Ambient {
     }
 }
 
-/// Share of a point below a table that is `above` (m) its middle, which reaches `reach` (m) up and down.
-pub fn share_below(above: f64, reach: f64) -> f64 {
-    match above.abs() < reach {
-        true => 0.5 + above / (2.0 * reach),
-        false => f64::from(above > 0.0),
+/// How far a point spans upwards and downwards; as nothing is known of it, not at all.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Span {
+    /// m  to each side, of the part of its cell that is its own
+    pub reach: f64,
+    /// -  its volume by that of the part, which it fills from below
+    pub filled: f64,
+}
+
+impl Span {
+    /// Share of the point below a table that is `above` (m) its place. Where its part sticks out of the body, or has
+    /// taken what is too little for a point of its own, it has another volume than the part.
+    pub fn share_below(self, above: f64) -> f64 {
+        let Self { reach, filled } = self;
+        match reach * filled > 0.0 {
+            true => ((above + reach) / (2.0 * reach * filled)).clamp(0.0, 1.0),
+            false => f64::from(above > 0.0),
+        }
     }
 }
 
@@ -104,13 +117,13 @@ impl<'a> StillWater<'a> {
         table.map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(0.0))
     }
 
-    /// N  force of the water on point `p`, which reaches `reach` (m) up and down: -J V0 grad p_a, and, unless its mass
-    /// `follows`, what the water weighs that its pores have taken up or given off, of what is below the water table.
-    pub fn force<const D: usize>(&self, points: &Points<D>, (p, reach): (usize, f64), follows: bool) -> Vector<D> {
+    /// N  force of the water on point `p`, which has this height: -J V0 grad p_a, and, unless its mass `follows`, what
+    /// the water weighs that its pores have taken up or given off, of what is below the water table.
+    pub fn force<const D: usize>(&self, points: &Points<D>, (p, span): (usize, Span), follows: bool) -> Vector<D> {
         let x = &points.x[p];
         let mut force = Vector::zeros();
         let Some((height, slope)) = self.ambient.table(x[0], self.t) else { return force };
-        let below = share_below(height - x[D - 1], reach);
+        let below = span.share_below(height - x[D - 1]);
         if below > 0.0 {
             let volume = points.volume[p] * below;
             if slope != 0.0 {
@@ -155,7 +168,7 @@ mod tests {
         let seed = Seed { id: 0, material: 0, x, volume: 0.25, mass: 0.25 * 20.0 / 9.81, v };
         let points = Points::<2>::from_seeds([seed], false);
         let weight = Vector::<2>::new(0.0, -9.81) * points.mass[0];
-        let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, (0, 0.0), false);
+        let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, (0, Span::default()), false);
         let (down, into) = (Vector::<2>::new(-beta.cos(), -beta.sin()), Vector::<2>::new(beta.sin(), -beta.cos()));
         let factor = phi.tan() * acts.dot(&into) / acts.dot(&down);
         assert!((factor - 0.8552).abs() < 5e-5, "{factor}");
