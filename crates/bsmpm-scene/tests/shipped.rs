@@ -1,6 +1,6 @@
 //! Every case that the project ships is valid, and the paper's column has the sizes that it should.
 
-use bsmpm_scene::{Base, Case, GridAxis, Quantity, load};
+use bsmpm_scene::{Base, Case, Counted, GridAxis, Quantity, load};
 use std::path::{Path, PathBuf};
 
 fn cases() -> PathBuf {
@@ -274,7 +274,10 @@ fn the_footing_of_the_paper() {
         assert_eq!((case.points(), footing.site.ends()), (points, Some([[0.0, ground], [1.0, ground]])), "{name}");
         assert_eq!((footing.base, &footing.path.rows[..]), (Base::Smooth, &[(1.0, [0.0, -2.0, 0.0])][..]));
         let within = Some([[0.0, ground - 2.5, 0.0], [2.5, ground - 0.5, 0.0]]);
-        assert_eq!(case.histories[5].quantity, Quantity::PressureNoise { within });
+        assert_eq!(
+            case.histories[5].quantity,
+            Quantity::PressureNoise { of: Counted { within, ..Counted::default() } }
+        );
     }
 }
 
