@@ -19,7 +19,7 @@ use bsmpm::water::observed::PoreWater;
 use bsmpm_scene::model::vector;
 use bsmpm_scene::surfaces::{self, DrainPlace, Gauge};
 use bsmpm_scene::words::Measurement;
-use bsmpm_scene::{Case, Counted, GridSpec, History, Quantity, Stage};
+use bsmpm_scene::{Case, GridSpec, History, Made, Quantity, Stage};
 use place::{PoreAt, at_followed, at_surface, both, displacement, followed_place, pore, section};
 use reported::{at_face, contact, rigid};
 
@@ -29,7 +29,8 @@ const VERTICAL: usize = 1;
 /// The histories of a run, with the points that they follow.
 pub struct Recorder<const D: usize> {
     histories: Vec<History>,
-    parts: Vec<Part>, // the points that each of them counts
+    parts: Vec<Part>,   // the points that each of them counts
+    vacant: Vec<usize>, // histories in whose box no point has been yet
     followed: Vec<Option<u64>>,
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
@@ -54,7 +55,9 @@ impl<const D: usize> Recorder<D> {
             observe::nearest(points, &(vector(at) - lower), |id| !history.lasts || lasting(id), halo)
         };
         let followed = histories.iter().enumerate().map(follow).collect();
-        let state = RecordState { followed, ..RecordState::default() };
+        let has_box = |number: &usize| histories[*number].quantity.counted().within.is_some();
+        let vacant = (0..histories.len()).filter(has_box).collect();
+        let state = RecordState { followed, vacant, ..RecordState::default() };
         Self::of(case, state)
     }
 
@@ -76,7 +79,8 @@ impl<const D: usize> Recorder<D> {
         Self {
             work,
             histories: case.histories.clone(),
-            parts: parts(case),
+            parts: parts::<D>(case),
+            vacant: state.vacant,
             followed: state.followed,
             reacting: case.histories.iter().map(react).collect(),
             gauge: Gauge::of(case),
@@ -93,7 +97,8 @@ impl<const D: usize> Recorder<D> {
     /// What must be known to go on.
     pub fn state(&self) -> RecordState {
         let (followed, books) = (self.followed.clone(), self.books.map(BooksForm));
-        RecordState { followed, books, left: self.left, work: self.work.clone(), datum: self.datum.clone() }
+        let (vacant, work, datum) = (self.vacant.clone(), self.work.clone(), self.datum.clone());
+        RecordState { followed, vacant, books, left: self.left, work, datum }
     }
 
     /// Follows points of the bodies that a stage has placed, and sets displacements to zero where it wants that.
@@ -130,6 +135,12 @@ impl<const D: usize> Recorder<D> {
             }
         }
         lost
+    }
+
+    /// Names of the histories in whose box no point has been yet, if there are any.
+    pub fn vacant(&self) -> Option<String> {
+        let names: Vec<&str> = self.vacant.iter().map(|&number| &*self.histories[number].name).collect();
+        (!names.is_empty()).then(|| names.join(", "))
     }
 
     /// What has left the grid so far.
@@ -170,6 +181,7 @@ impl<const D: usize> Recorder<D> {
     ) -> Result<Vec<f64>, StepError> {
         let energy = if model.balances_energy { self.energy(model, points, (t, report), halo) } else { Vec::new() };
         self.work.iter_mut().zip(&report.strips).for_each(|(sum, strip)| *sum += strip.work);
+        self.vacant.retain(|&number| !observe::is_occupied(points, &self.parts[number], halo));
         let mut row = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
             let mut values = match &history.quantity {
@@ -262,6 +274,9 @@ impl<const D: usize> Recorder<D> {
             }
             Quantity::KineticEnergy { .. } => vec![observe::kinetic_energy(points, part, halo)],
             Quantity::MeanStress { .. } => shown::<D>(&observe::mean_stress(points, part, halo)),
+            Quantity::MeanDisplacement { .. } => observe::mean_displacement(points, part, halo).as_slice().to_vec(),
+            Quantity::MeanVelocity { .. } => observe::mean_velocity(points, part, halo).as_slice().to_vec(),
+            Quantity::PlasticStrain { .. } => observe::plastic_strain(points, part, halo).to_vec(),
             Quantity::SectionForces { lines, round, fixed } => {
                 let local = lines.iter().map(|line| line.map(|end| vector(end) - self.lower));
                 let at_start = Section { lines: local.collect(), round: *round };
@@ -277,9 +292,8 @@ impl<const D: usize> Recorder<D> {
             }
             Quantity::Heave { .. } => vec![observe::heave(points, part, halo)],
             Quantity::StressNoise => both(noise::stress_noise(&model.grid, points, model.weighting, VERTICAL, halo)?),
-            Quantity::PressureNoise { within } => {
-                let window = within.map(|corners| corners.map(|corner| vector(corner) - self.lower));
-                both(noise::pressure_noise(&model.grid, points, model.weighting, window, halo)?)
+            Quantity::PressureNoise { .. } => {
+                both(noise::pressure_noise(&model.grid, (points, part), model.weighting, halo)?)
             }
             Quantity::Displacement { at } => {
                 let Some(id) = followed else { return Ok(vec![0.0; D]) };
@@ -318,13 +332,24 @@ fn is_of_rigid(quantity: &Quantity) -> bool {
 }
 
 /// The points that every history counts.
-fn parts(case: &Case) -> Vec<Part> {
+fn parts<const D: usize>(case: &Case) -> Vec<Part> {
     // Bodies are counted for those alone who name one.
-    let mut ids = None;
-    let mut part = |history: &History| match history.quantity.counted() {
-        Counted::All => Part::Whole,
-        Counted::Material(number) => Part::Material(number),
-        Counted::Body(number) => Part::Ids(ids.get_or_insert_with(|| case.ids())[number].clone()),
+    let (mut ids, origin) = (None, vector::<D, _>(case.grid.lower()));
+    let local = |corner: [f64; 3]| {
+        let from_origin = vector::<D, _>(corner) - origin;
+        std::array::from_fn(|axis| if axis < D { from_origin[axis] } else { 0.0 })
+    };
+    let mut part = |history: &History| {
+        let counted = history.quantity.counted();
+        let made = match counted.made {
+            Made::All => Part::Whole,
+            Made::Material(number) => Part::Material(number),
+            Made::Body(number) => Part::Ids(ids.get_or_insert_with(|| case.ids())[number].clone()),
+        };
+        match counted.within {
+            Some(corners) => Part::Within(Box::new(made), corners.map(local)),
+            None => made,
+        }
     };
     case.histories.iter().map(&mut part).collect()
 }

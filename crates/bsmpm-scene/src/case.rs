@@ -12,7 +12,7 @@ mod water;
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
 pub use flow::{Drain, DrainSite, Flow, Inflow};
-pub use history::{Check, Column, Counted, Face, History, Quantity};
+pub use history::{Check, Column, Counted, Face, History, Made, Quantity};
 pub(crate) use loads::keeps_direction;
 pub use loads::{Footing, Initial, LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Shares, Site, Traction};
 pub use profile::Profile;

@@ -4,9 +4,10 @@
 
 use crate::case::{Body, Case, Nonlinear, Solver};
 use crate::grid::GridSpec;
-use crate::words::{Factor, Pc};
+use crate::words::{Factor, Geometry, Pc};
 use bsmpm::grid::room;
 use bsmpm::model::Regime;
+use bsmpm::step::adjoint::is_dilatant;
 use std::ops::Range;
 
 /// Largest number of cells, unknowns and matrix rows: PETSc's and MPI's counts are 32-bit here.
@@ -49,6 +50,8 @@ const LEVEL: u128 = 15 * 8;
 const FRONT: u128 = 12 * 8;
 /// The same in space per unknown and cube root of their number: separators are planes. Measured on 30,000 and 77,000.
 const DENSE: u128 = 480;
+/// Bytes of a number.
+const NUMBER: u128 = 8;
 /// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
 const KRYLOV: u128 = 100 * 16;
 /// The same where water flows, of as many products as there may be.
@@ -228,6 +231,20 @@ impl Case {
         Some((pressures, pressures * (2 * order + 1).pow(self.grid.dims() as u32)))
     }
 
+    /// Bytes of a point in the derivative that Newton's directions are sought with: moduli, for every component of the
+    /// gradient a gradient, under F-bar two gradients more, and its pressure's in dilatant material.
+    fn linearised(&self) -> u128 {
+        let components: u128 = match self.geometry {
+            Geometry::PlaneStrain => 4,
+            Geometry::Axisymmetric => 5,
+            Geometry::Solid => 9,
+        };
+        let averaged = if self.stabilisation.averages() { 2 * components } else { 0 };
+        let dilates = self.materials.iter().any(|named| is_dilatant(&named.material));
+        let adjoint = if self.stabilisation.lowers() && dilates { components + 2 } else { 0 };
+        (components.pow(2) + averaged + adjoint) * NUMBER
+    }
+
     /// Bytes that another rank adds in space, where layers of nodes are large: those on both sides of the cut that rows
     /// reach, with so many `bytes` a node, and of a dissection half the square of what separates the two, which both
     /// have.
@@ -270,6 +287,13 @@ impl Case {
             + systems.held
             + passing
             + wet;
+        let derivative = points * self.linearised();
+        let [now, perhaps] = match self.solver.nonlinear {
+            Nonlinear::Newton => [derivative, 0],
+            Nonlinear::Auto => [0, derivative],
+            _ => [0; 2],
+        };
+        let bytes = bytes + now;
         let ghosts = if dims == 3 { self.ghosts(occupied, reach, stencil + every + vectors) } else { 0 };
         let repeated = systems.repeated + wet_repeated + ghosts;
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
@@ -287,7 +311,7 @@ impl Case {
             bytes: bounded(bytes),
             repeated: bounded(repeated),
             coordinates: bounded(if coordinates { entries * BUILT } else { 0 }),
-            newton: bounded(systems.perhaps[0]),
+            newton: bounded(systems.perhaps[0] + perhaps),
             newton_repeated: bounded(systems.perhaps[1]),
         }
     }

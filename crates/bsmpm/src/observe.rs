@@ -121,11 +121,53 @@ pub fn kinetic_energy<const D: usize>(points: &Points<D>, part: &Part, halo: &dy
 /// Mean Cauchy stress of the points of a part by components XX YY ZZ XY YZ XZ, Pa, weighted with their present volumes;
 /// zero without points.
 pub fn mean_stress<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> [f64; 6] {
-    let sums: [f64; 7] = total(points, part, halo, |p, k| {
+    let means: [f64; 7] = means(points, part, halo, |p, k| points.sigma.at(p).0[k]);
+    std::array::from_fn(|k| means[k])
+}
+
+/// Mean displacement of the points of a part since displacements were last set to zero, m, weighted with their present
+/// volumes; zero without points.
+pub fn mean_displacement<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Vector<D> {
+    let along: [f64; 4] =
+        means(points, part, halo, |p, axis| if axis < D { points.displacement(p)[axis] } else { 0.0 });
+    Vector::from_fn(|axis, _| along[axis])
+}
+
+/// Mean velocity of the points of a part, m/s, weighted with their present volumes; zero without points and in
+/// quasi-static scenes.
+pub fn mean_velocity<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Vector<D> {
+    let Some(motion) = &points.motion else { return Vector::zeros() };
+    let along: [f64; 4] = means(points, part, halo, |p, axis| if axis < D { motion.v[p][axis] } else { 0.0 });
+    Vector::from_fn(|axis, _| along[axis])
+}
+
+/// Accumulated plastic strain of the points of a part: its mean, weighted with their present volumes, and the largest;
+/// zero without points.
+pub fn plastic_strain<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> [f64; 2] {
+    let [mean, _] = means(points, part, halo, |p, _| points.eps_p[p]);
+    [mean, largest(points, part, halo, |p| points.eps_p[p])]
+}
+
+/// Means of `N - 1` values over the points of a part, weighted with their present volumes, and a last number that is
+/// none; zero without points.
+fn means<const D: usize, const N: usize>(
+    points: &Points<D>,
+    part: &Part,
+    halo: &dyn Halo,
+    value: impl Fn(usize, usize) -> f64 + Sync,
+) -> [f64; N] {
+    let sums: [f64; N] = total(points, part, halo, |p, k| {
         let volume = points.volume[p] * points.F.at(p).determinant();
-        points.sigma.at(p).0.get(k).map_or(volume, |stress| volume * stress)
+        if k + 1 < N { volume * value(p, k) } else { volume }
     });
-    std::array::from_fn(|k| if sums[6] > 0.0 { sums[k] / sums[6] } else { 0.0 })
+    sums.map(|sum| if sums[N - 1] > 0.0 { sum / sums[N - 1] } else { 0.0 })
+}
+
+/// Whether a part has any point.
+pub fn is_occupied<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> bool {
+    let mut any = [if part.of(points).next().is_some() { 1.0 } else { 0.0 }];
+    halo.maximum(&mut any);
+    any[0] > 0.0
 }
 
 /// Angular momentum of the points of a part about `place` (m, from the grid's lower corner): sum m (x - place) x v

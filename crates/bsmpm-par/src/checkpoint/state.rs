@@ -127,6 +127,9 @@ fn is_zero(number: &f64) -> bool {
 pub struct RecordState {
     /// For every history the number of the point that it follows, if it does.
     pub followed: Vec<Option<u64>>,
+    /// Numbers of the histories in whose box no point has been yet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub vacant: Vec<usize>,
     /// J  kinetic and elastic energy at the start, and all flows since; none without an energy history.
     pub books: Option<BooksForm>,
     /// Points that have left the grid, and their mass, kg/m.

@@ -35,6 +35,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     pub(super) fn finish(self) -> u8 {
         let mut failed = [0.0];
         let mut run = self;
+        run.tell_vacant();
         if let Some(ledger) = &mut run.ledger {
             failed[0] = f64::from(!ledger.judge());
             for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {

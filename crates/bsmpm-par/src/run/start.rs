@@ -43,6 +43,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             (report.reactions, report.strips) = (start.0.reactions, start.0.strips);
         }
         self.record(&report);
+        if let Some(names) = self.recorder.vacant() {
+            self.log.line("history", &format!("histories without a point in their box at the start: {names}"));
+        }
         self.profile(|_, profile| profile.times.is_empty());
         self.frame();
         Ok(())

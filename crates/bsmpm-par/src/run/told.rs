@@ -195,6 +195,16 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
     }
 
+    /// Boxes of histories that no point has come into.
+    pub(super) fn tell_vacant(&mut self) {
+        if let Some(names) = self.recorder.vacant() {
+            self.warn(format!(
+                "no point was in the box of these histories in any step, and they tell nothing of the ground: {names}; a box stays \
+                 where it is in space"
+            ));
+        }
+    }
+
     /// Material that leaves is told when the first does, and counted in the manifest.
     pub(super) fn tell_outflow(&mut self, accepted: &Accepted) {
         let Some(outflow) = &accepted.report.outflow else { return };

@@ -18,8 +18,17 @@ pub struct History {
 }
 
 /// The points that a history counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counted {
+    /// by what they are made of
+    pub made: Made,
+    /// m  lower and upper corner of the box that they are in at that time, in the case's coordinates; `None`: anywhere
+    pub within: Option<[[f64; 3]; 2]>,
+}
+
+/// What the points are of that a history counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Counted {
+pub enum Made {
     /// All of them.
     #[default]
     All,
@@ -80,6 +89,21 @@ pub enum Quantity {
     },
     /// Pa  positive in tension
     MeanStress {
+        /// the points that count
+        of: Counted,
+    },
+    /// m
+    MeanDisplacement {
+        /// the points that count
+        of: Counted,
+    },
+    /// m/s
+    MeanVelocity {
+        /// the points that count
+        of: Counted,
+    },
+    /// -  mean and largest
+    PlasticStrain {
         /// the points that count
         of: Counted,
     },
@@ -148,8 +172,8 @@ pub enum Quantity {
     StressNoise,
     /// Pa  oscillation of the pressure about its average over the grid and about a plane
     PressureNoise {
-        /// m  lower and upper corner of the points that count, in the case's coordinates; `None`: all points
-        within: Option<[[f64; 3]; 2]>,
+        /// the points that count
+        of: Counted,
     },
     /// m  the largest upward displacement of any point
     Heave {
@@ -244,9 +268,10 @@ impl Quantity {
         match *self {
             Self::Mass { of } | Self::Momentum { of } | Self::CentreOfMass { of } | Self::AngularMomentum { of } => of,
             Self::KineticEnergy { of } | Self::MeanStress { of } | Self::Runout { of, .. } => of,
-            Self::PorePressures { of } => of,
+            Self::MeanDisplacement { of } | Self::MeanVelocity { of } | Self::PlasticStrain { of } => of,
+            Self::PorePressures { of } | Self::PressureNoise { of } => of,
             Self::Height { of, .. } | Self::MaxDisplacement { of } | Self::Heave { of } => of,
-            _ => Counted::All,
+            _ => Counted::default(),
         }
     }
 
@@ -264,6 +289,9 @@ impl Quantity {
             Self::AngularMomentum { .. } => Measurement::AngularMomentum,
             Self::KineticEnergy { .. } => Measurement::KineticEnergy,
             Self::MeanStress { .. } => Measurement::MeanStress,
+            Self::MeanDisplacement { .. } => Measurement::MeanDisplacement,
+            Self::MeanVelocity { .. } => Measurement::MeanVelocity,
+            Self::PlasticStrain { .. } => Measurement::PlasticStrain,
             Self::SectionForces { .. } => Measurement::SectionForces,
             Self::Reaction { .. } => Measurement::Reaction,
             Self::Displacement { .. } => Measurement::Displacement,

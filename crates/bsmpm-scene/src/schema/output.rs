@@ -89,7 +89,8 @@ pub(super) static HISTORY: Table = Table {
             Name,
             Optional,
             "of quantities of all points: those of a material, of mass, momentum, centre-of-mass, angular-momentum, \
-             kinetic-energy, mean-stress, pore-pressures, runout, height, max-displacement and heave",
+             kinetic-energy, mean-stress, mean-displacement, mean-velocity, plastic-strain, pore-pressures, pressure-noise, runout, height, \
+             max-displacement and heave",
         ),
         key("body", Name, Optional, "of the same quantities: the points of a body by its name, instead of material"),
         key("from", Pair(In::Length, Range::ANY), Optional, "of section-forces: where the line begins"),
@@ -115,7 +116,14 @@ pub(super) static HISTORY: Table = Table {
             "of velocity, stress and what the water of a place has: of the place itself, by the plane through the points \
              around it, also where these are on one side; of the nearest point unless given",
         ),
-        key("box", Kind::Table(&body::BOX), Optional, "of pressure-noise: the points inside; all unless given"),
+        key(
+            "box",
+            Kind::Table(&body::BOX),
+            Optional,
+            "of the same quantities: the points that are in it at that time, of those of the material or body if one is given; it \
+             stays where it is in space: for soil that a box has at the start give that a body of its own. With no point in it sums \
+             and means are 0, and places the grid's lower corner; a run in which none ever is in it ends with a warning",
+        ),
     ],
     exclusive: &[
         one_of(&["material", "body"], false),

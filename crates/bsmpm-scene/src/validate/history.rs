@@ -1,7 +1,7 @@
 //! Histories and the checks of their columns.
 
 use super::{flow, place, site};
-use crate::case::{Body, Check, Column, Counted, Face, History, NamedMaterial, Quantity, Support};
+use crate::case::{Body, Check, Column, Counted, Face, History, Made, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
@@ -144,7 +144,7 @@ fn is_never_held(root: &Record, side: Side) -> bool {
 /// Whether it is nothing where nothing has a velocity.
 fn is_of_motion(measured: Measurement) -> bool {
     use Measurement::*;
-    matches!(measured, Velocity | Momentum | AngularMomentum | KineticEnergy | RigidVelocity)
+    matches!(measured, Velocity | MeanVelocity | Momentum | AngularMomentum | KineticEnergy | RigidVelocity)
 }
 
 /// Keys that belong to some quantities.
@@ -171,8 +171,8 @@ const KEYS: [&str; 16] = [
 fn own_keys(measured: Measurement, geometry: Option<Geometry>) -> (&'static [&'static str], &'static [&'static str]) {
     use Measurement::*;
     match measured {
-        Runout => (&["percentile", "material", "body"], &[]),
-        Height => (&["at_x", "material", "body"], &[]),
+        Runout => (&["percentile", "material", "body", "box"], &[]),
+        Height => (&["at_x", "material", "body", "box"], &[]),
         Reaction | Contact | Gap | SlipRate | FrictionPower => (&[], &["face"]),
         Moment | Work => (&[], &["of"]),
         RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => (&[], &["rigid"]),
@@ -182,8 +182,7 @@ fn own_keys(measured: Measurement, geometry: Option<Geometry>) -> (&'static [&'s
         Velocity | Stress | PorePressure | ExcessPressure | Porosity | Flux => (&["surface"], &["at"]),
         SectionForces if geometry == Some(Geometry::Solid) => (&["fixed", "rectangle", "disc"], &[]),
         SectionForces => (&["fixed"], &["from", "to"]),
-        PressureNoise => (&["box"], &[]),
-        _ if measured.is_of_part() => (&["material", "body"], &[]),
+        _ if measured.is_of_part() => (&["material", "body", "box"], &[]),
         _ => (&[], &[]),
     }
 }
@@ -194,26 +193,26 @@ fn quantity(
     (root, grid, made): (&Record, Option<&GridSpec>, CaseBodies<'_>),
     report: &mut Report<'_>,
 ) -> Option<Quantity> {
+    // Once, so that an error in what counts is told once.
+    let counts = if measured.is_of_part() { counted(record, (grid, made), report)? } else { Counted::default() };
     Some(match measured {
         Measurement::Runout => {
             let given = record.gives("percentile");
-            Quantity::Runout {
-                percentile: if given { record.number("percentile")? } else { 100.0 },
-                of: counted(record, made, report)?,
-            }
+            Quantity::Runout { percentile: if given { record.number("percentile")? } else { 100.0 }, of: counts }
         }
         Measurement::Front => Quantity::Front,
-        Measurement::Height => {
-            Quantity::Height { at_x: at_x(record, grid, report)?, of: counted(record, made, report)? }
-        }
-        Measurement::MaxDisplacement => Quantity::MaxDisplacement { of: counted(record, made, report)? },
-        Measurement::Mass => Quantity::Mass { of: counted(record, made, report)? },
+        Measurement::Height => Quantity::Height { at_x: at_x(record, grid, report)?, of: counts },
+        Measurement::MaxDisplacement => Quantity::MaxDisplacement { of: counts },
+        Measurement::Mass => Quantity::Mass { of: counts },
         Measurement::Outflow => Quantity::Outflow,
-        Measurement::Momentum => Quantity::Momentum { of: counted(record, made, report)? },
-        Measurement::CentreOfMass => Quantity::CentreOfMass { of: weighing(record, made, report)? },
-        Measurement::AngularMomentum => Quantity::AngularMomentum { of: counted(record, made, report)? },
-        Measurement::KineticEnergy => Quantity::KineticEnergy { of: counted(record, made, report)? },
-        Measurement::MeanStress => Quantity::MeanStress { of: counted(record, made, report)? },
+        Measurement::Momentum => Quantity::Momentum { of: counts },
+        Measurement::CentreOfMass => Quantity::CentreOfMass { of: weighing(counts, record, made, report)? },
+        Measurement::AngularMomentum => Quantity::AngularMomentum { of: counts },
+        Measurement::KineticEnergy => Quantity::KineticEnergy { of: counts },
+        Measurement::MeanStress => Quantity::MeanStress { of: counts },
+        Measurement::MeanDisplacement => Quantity::MeanDisplacement { of: counts },
+        Measurement::MeanVelocity => Quantity::MeanVelocity { of: counts },
+        Measurement::PlasticStrain => Quantity::PlasticStrain { of: counts },
         Measurement::SectionForces => {
             let (lines, round) = section((root, record), grid, report)?;
             Quantity::SectionForces { lines, round, fixed: record.gives("fixed") && record.flag("fixed")? }
@@ -226,18 +225,15 @@ fn quantity(
         Measurement::PorePressure => {
             Quantity::PorePressure { at: at(record, grid, report)?, surface: at_surface(record)? }
         }
-        Measurement::PorePressures => Quantity::PorePressures { of: counted(record, made, report)? },
+        Measurement::PorePressures => Quantity::PorePressures { of: counts },
         Measurement::ExcessPressure | Measurement::Porosity | Measurement::Flux => {
             Quantity::Pore { what: measured, at: at(record, grid, report)?, surface: at_surface(record)? }
         }
         Measurement::WaterOutflow => Quantity::WaterOutflow { drain: flow::drain_of(record, root, report)? },
         Measurement::WaterBalance => Quantity::WaterBalance,
         Measurement::StressNoise => Quantity::StressNoise,
-        Measurement::PressureNoise if record.gives("box") => {
-            Quantity::PressureNoise { within: Some(within(record.record("box")?, grid, report)?) }
-        }
-        Measurement::PressureNoise => Quantity::PressureNoise { within: None },
-        Measurement::Heave => Quantity::Heave { of: counted(record, made, report)? },
+        Measurement::PressureNoise => Quantity::PressureNoise { of: counts },
+        Measurement::Heave => Quantity::Heave { of: counts },
         Measurement::FootingPressure => Quantity::FootingPressure,
         Measurement::FootingForce => Quantity::FootingForce,
         Measurement::Penetration => Quantity::Penetration,
@@ -269,13 +265,19 @@ fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usiz
     found
 }
 
-/// The points that count: of a material that a body is made of, of a body, or all.
-fn counted(record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> Option<Counted> {
-    match (record.gives("material"), record.gives("body")) {
-        (true, _) => material(record, made, report).map(Counted::Material),
-        (_, true) => body(record, made?.1, report).map(Counted::Body),
-        _ => Some(Counted::All),
-    }
+/// The points that count: of a material that a body is made of, of a body, or all; of those all, or those in a box.
+fn counted(
+    record: &Record,
+    (grid, made): (Option<&GridSpec>, CaseBodies<'_>),
+    report: &mut Report<'_>,
+) -> Option<Counted> {
+    let within = if record.gives("box") { Some(within(record.record("box")?, grid, report)?) } else { None };
+    let made = match (record.gives("material"), record.gives("body")) {
+        (true, _) => Made::Material(material(record, made, report)?),
+        (_, true) => Made::Body(body(record, made?.1, report)?),
+        _ => Made::All,
+    };
+    Some(Counted { made, within })
 }
 
 /// Number of the history's material, which a body is made of.
@@ -305,12 +307,12 @@ fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usi
 }
 
 /// The points that count, if they have mass.
-fn weighing(record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> Option<Counted> {
-    let (of, (materials, bodies)) = (counted(record, made, report)?, made?);
-    let counts = |number: usize, body: &Body| match of {
-        Counted::All => true,
-        Counted::Material(of) => usize::from(of) == body.material,
-        Counted::Body(of) => of == number,
+fn weighing(of: Counted, record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> Option<Counted> {
+    let (materials, bodies) = made?;
+    let counts = |number: usize, body: &Body| match of.made {
+        Made::All => true,
+        Made::Material(of) => usize::from(of) == body.material,
+        Made::Body(of) => of == number,
     };
     let mut counted = bodies.iter().enumerate().filter(|(number, body)| counts(*number, body));
     if !counted.any(|(_, body)| materials[body.material].density.is_some()) {

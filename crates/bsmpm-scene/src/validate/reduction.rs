@@ -187,7 +187,7 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     case.stages.clear();
     case.flow.iter_mut().for_each(|flow| flow.motion = Motion::Held);
     // Others may be of what is not there.
-    case.histories.retain(|history| history.quantity == Quantity::MaxDisplacement { of: Counted::All });
+    case.histories.retain(|history| history.quantity == Quantity::MaxDisplacement { of: Counted::default() });
     case.analysis.end = end;
     let ramps = (case.gravity.iter_mut().map(|Gravity { ramp, .. }| ramp))
         .chain(case.tractions.iter_mut().map(|Traction { ramp, .. }| ramp))

@@ -26,6 +26,12 @@ choice! {
         KineticEnergy = "kinetic-energy",
         /// Mean Cauchy stress, positive in tension, weighted with the points' present volumes.
         MeanStress = "mean-stress",
+        /// Mean displacement, weighted with the points' present volumes.
+        MeanDisplacement = "mean-displacement",
+        /// Mean velocity, weighted with the points' present volumes.
+        MeanVelocity = "mean-velocity",
+        /// Accumulated plastic strain, the sum of sqrt(2/3) |dev| of its increments.
+        PlasticStrain = "plastic-strain",
         /// What the stress transmits across the line from `from` to `to`, per metre of thickness: of the material on
         /// its right on that on its left: the effective stress, without what water presses with. What of the line is
         /// out of the body counts for nothing. Of a solid across a
@@ -74,7 +80,7 @@ choice! {
         /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of
         /// |sigma_yy|.
         StressNoise = "stress-noise",
-        /// Oscillation of the pressure from point to point: a root mean square over the points in `box`, or all.
+        /// Oscillation of the pressure from point to point: a root mean square over the points.
         PressureNoise = "pressure-noise",
         /// The largest upward displacement of any point.
         Heave = "heave",
@@ -143,6 +149,8 @@ const SECTION_IN_SPACE: &[(&str, &str)] = &[
 ];
 const RANGE: &[(&str, &str)] =
     &[("-mean", "their mean, weighted with present volumes"), ("-least", "the least"), ("-largest", "the largest")];
+const STRAIN: &[(&str, &str)] =
+    &[("-mean", "the mean, weighted with present volumes"), ("-largest", "of the point that has most")];
 const NOISE: &[(&str, &str)] =
     &[("-average", "about the average over the grid"), ("-plane", "about the plane through the points around")];
 const CONTACT: &[(&str, &str)] = &[("-closed", "part of the nodes"), ("-sliding", "part of the normal force")];
@@ -200,6 +208,8 @@ impl Measurement {
             Self::Momentum | Self::CentreOfMass | Self::Reaction | Self::Displacement | Self::Velocity | Self::Flux => {
                 VECTOR
             }
+            Self::MeanDisplacement | Self::MeanVelocity => VECTOR,
+            Self::PlasticStrain => STRAIN,
             Self::Stress | Self::MeanStress => STRESS,
             Self::SectionForces => SECTION,
             Self::PorePressures => RANGE,
@@ -231,7 +241,7 @@ impl Measurement {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Runout | Self::Front | Self::Height | Self::Heave | Self::Penetration => "m",
-            Self::MaxDisplacement | Self::Displacement | Self::Gap | Self::CentreOfMass => "m",
+            Self::MaxDisplacement | Self::Displacement | Self::Gap | Self::CentreOfMass | Self::MeanDisplacement => "m",
             Self::RigidDisplacement | Self::RigidSlip | Self::RigidGap => "m",
             Self::RigidRotation => "deg",
             Self::RigidMoment => "N",
@@ -239,11 +249,16 @@ impl Measurement {
             Self::Momentum => "kg/s",
             Self::AngularMomentum => "kg m/s",
             Self::Reaction | Self::FootingForce | Self::SectionForces | Self::RigidForce => "N/m",
-            Self::Velocity | Self::SlipRate | Self::RigidVelocity | Self::Flux => "m/s",
+            Self::Velocity | Self::SlipRate | Self::RigidVelocity | Self::Flux | Self::MeanVelocity => "m/s",
             Self::FrictionPower => "W/m",
             Self::Stress | Self::MeanStress | Self::PressureNoise | Self::FootingPressure => "Pa",
             Self::PorePressure | Self::PorePressures | Self::ExcessPressure => "Pa",
-            Self::StressNoise | Self::Slip | Self::Contact | Self::Porosity | Self::WaterBalance => "-",
+            Self::PlasticStrain
+            | Self::StressNoise
+            | Self::Slip
+            | Self::Contact
+            | Self::Porosity
+            | Self::WaterBalance => "-",
             Self::WaterOutflow => "m3/m",
             Self::Moment => "N",
             Self::Energy | Self::KineticEnergy | Self::Work | Self::RigidWork => "J/m",
@@ -256,10 +271,11 @@ impl Measurement {
         if self == Self::SectionForces && column >= dims { "N m/m" } else { self.unit() }
     }
 
-    /// Whether it is of the points of a material or a body, if one is given.
+    /// Whether it is of the points of a material, a body or a box, if one is given.
     pub fn is_of_part(self) -> bool {
         use Measurement::*;
         let of_mass = matches!(self, Mass | Momentum | CentreOfMass | AngularMomentum | KineticEnergy | MeanStress);
-        of_mass || matches!(self, PorePressures | Runout | Height | MaxDisplacement | Heave)
+        let of_motion = matches!(self, MeanDisplacement | MeanVelocity | MaxDisplacement | Heave);
+        of_mass || of_motion || matches!(self, PlasticStrain | PorePressures | PressureNoise | Runout | Height)
     }
 }

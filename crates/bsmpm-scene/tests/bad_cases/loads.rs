@@ -288,9 +288,9 @@ pub const INITIAL: &[Row] = &[
     ),
     row(
         "quantity = \"pressure-noise\"",
-        "quantity = \"heave\"\nname = \"h\"",
+        "quantity = \"front\"\nname = \"h\"",
         "history.4.box",
-        "no meaning for quantity \"heave\"",
+        "no meaning for quantity \"front\"",
     )
     .down(2),
     row(

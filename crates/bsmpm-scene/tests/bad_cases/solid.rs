@@ -87,6 +87,14 @@ pub const SOLID: &[Row] = &[
     row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "not shown to be right in a solid"),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5]", "history.0.at", "solid: of three"),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 3.5, 1.0]", "history.0.at", "is outside the grid"),
+    row("lower = [0.0, 0.5, 0.0]", "lower = [0.0, 0.5]", "history.6.box.lower", "solid: of three"),
+    row("lower = [0.0, 0.5, 0.0]", "lower = [0.0, 1.5, 0.0]", "history.6.box.upper", "the box is empty"),
+    row(
+        "lower = [0.0, 0.5, 0.0], upper = [2.0",
+        "lower = [5.0, 0.5, 0.0], upper = [6.0",
+        "history.6.box",
+        "outside the grid",
+    ),
     row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5]", "profile.0.from", "solid: of three"),
     row(
         "rectangle = { lower = [0.0, 0.0, 0.5]",

@@ -10,8 +10,8 @@ use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
-    BackgroundKind, Case, Counted, Error, Every, Extent, Face, GridAxis, Place, Quadrature, Quantity, Site, Support,
-    seed,
+    BackgroundKind, Case, Counted, Error, Every, Extent, Face, GridAxis, Made, Place, Quadrature, Quantity, Site,
+    Support, seed,
 };
 
 const FULL: &str = include_str!("../full.toml");
@@ -188,11 +188,12 @@ fn the_full_case_in_si() {
         "rigid-force-y",
     ];
     assert_eq!(columns, expected);
-    assert_eq!(case.histories[6].quantity, Quantity::CentreOfMass { of: Counted::Material(0) });
     assert_eq!(
-        case.histories[4].quantity,
-        Quantity::PressureNoise { within: Some([[0.0, 0.0, 0.0], [2.0, 1.0, 0.0]]) }
+        case.histories[6].quantity,
+        Quantity::CentreOfMass { of: Counted { made: Made::Material(0), within: None } }
     );
+    let within = Some([[0.0, 0.0, 0.0], [2.0, 1.0, 0.0]]);
+    assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { of: Counted { made: Made::All, within } });
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
     let told =
         |what: &str| case.warnings.iter().filter(|told| told.starts_with("rigid.") && told.contains(what)).count();

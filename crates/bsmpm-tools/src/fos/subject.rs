@@ -121,7 +121,7 @@ impl Subject {
         if !reasons.is_empty() {
             return Err(Error::NoFactor { path: path.to_owned(), reasons });
         }
-        let whole = Quantity::MaxDisplacement { of: Counted::All };
+        let whole = Quantity::MaxDisplacement { of: Counted::default() };
         let mut recorded: Vec<_> = case.histories.iter().filter(|history| history.quantity == whole).collect();
         recorded.sort_by_key(|history| history.scale == 1.0);
         // Others may have its name: the largest displacement of a body.

@@ -1,11 +1,12 @@
 //! What is told of lines, places and sections in a solid: the closed forms of a block at rest and of a bar that bends
 //! and twists, the same on any number of ranks and however a run is cut.
 
+use super::solid::{PLANE, slice};
 use super::solid_loads::BAR;
 use super::told_parts::goes_the_same_way;
 use crate::support::Scratch;
 use crate::support::cases::changed;
-use crate::support::results::{at, history};
+use crate::support::results::{all_finite, all_frames, at, history, manifest};
 use bsmpm_io::table;
 
 /// 2 m of soil of 20 kN/m3 between smooth walls.
@@ -160,4 +161,79 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
         assert!(others.iter().all(|other| other.abs() < 2e-3), "{others:?}");
     }
     goes_the_same_way(&scratch, &["history.csv"], (2, 1e-9));
+}
+
+/// Sand that slumps through a box which it is partly in at the start, into one that it reaches, and far from a third;
+/// in a plane and in space, held against sums over the points that frames have there.
+#[test]
+fn boxes_of_histories_count_the_points_that_frames_have_there() {
+    const QUANTITIES: [&str; 6] =
+        ["mass", "mean-stress", "mean-displacement", "mean-velocity", "plastic-strain", "kinetic-energy"];
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    // In the plane of the slump, (x, height).
+    let boxes =
+        [("toe", [[0.55, 0.1], [1.3, 0.9]]), ("ahead", [[1.02, 0.0], [4.0, 2.0]]), ("never", [[3.0, 1.0], [4.0, 2.0]])];
+    for (text, dims) in [(PLANE.to_owned(), 2), (slice(), 3)] {
+        let corner = |[x, up]: [f64; 2], across: f64| if dims == 2 { vec![x, up] } else { vec![x, across, up] };
+        let within = |(_, [lower, upper]): &(&str, [[f64; 2]; 2])| [corner(*lower, 0.1), corner(*upper, 0.25)];
+        let mut case = changed(&text, "every = 0.1", "every = 0.1\nfields = [\"density\"]");
+        for (name, quantity) in boxes.iter().flat_map(|of| QUANTITIES.map(|quantity| (of, quantity))) {
+            let ([lower, upper], name) = (within(name), name.0);
+            case += &format!(
+                "[[history]]\nquantity = \"{quantity}\"\nmaterial = \"sand\"\nname = \"{name}-{quantity}\"\n\
+                 box = {{ lower = {lower:?}, upper = {upper:?} }}\n"
+            );
+        }
+        let scratch = Scratch::with_case(&case);
+        scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
+        let (one, mut counts) = (scratch.path("one"), Vec::new());
+        all_finite(&one);
+        let rows = history(&one);
+        for (frame, of) in all_frames(&one).iter().flat_map(|frame| boxes.iter().map(move |of| (frame, of))) {
+            let real = |name: &str, components: usize| frame.real(name, components).unwrap();
+            let [lower, upper] = within(of);
+            let inside = |x: &[f64; 3]| (0..dims).all(|axis| lower[axis] <= x[axis] && x[axis] <= upper[axis]);
+            let found: Vec<usize> = (0..frame.position.len()).filter(|&p| inside(&frame.position[p])).collect();
+            counts.push((of.0, found.len()));
+            let volume = |p: usize| real("volume", 1)[p];
+            let sum = |value: &dyn Fn(usize) -> f64| found.iter().map(|&p| value(p)).sum::<f64>();
+            let mean = |value: &dyn Fn(usize) -> f64| {
+                if found.is_empty() { 0.0 } else { sum(&|p| volume(p) * value(p)) / sum(&volume) }
+            };
+            let mass = |p: usize| volume(p) * real("density", 1)[p];
+            let speed2 = |p: usize| real("velocity", 3)[3 * p..3 * p + 3].iter().map(|v| v * v).sum::<f64>();
+            let mut expected = vec![
+                ("mass".to_owned(), sum(&mass), 2e3),
+                ("kinetic-energy".to_owned(), sum(&|p| 0.5 * mass(p) * speed2(p)), 1e3),
+                ("plastic-strain-mean".to_owned(), mean(&|p| real("plastic_strain", 1)[p]), 0.1),
+                (
+                    "plastic-strain-largest".to_owned(),
+                    found.iter().map(|&p| real("plastic_strain", 1)[p]).fold(0.0, f64::max),
+                    0.1,
+                ),
+                ("mean-stress-xx".to_owned(), mean(&|p| real("stress", 6)[6 * p]), 1e4),
+                ("mean-stress-xy".to_owned(), mean(&|p| real("stress", 6)[6 * p + 3]), 1e4),
+            ];
+            for (axis, name) in AXES.into_iter().enumerate().take(dims) {
+                expected.push((format!("mean-velocity-{name}"), mean(&|p| real("velocity", 3)[3 * p + axis]), 1.0));
+                let along = mean(&|p| real("displacement", 3)[3 * p + axis]);
+                expected.push((format!("mean-displacement-{name}"), along, 0.1));
+            }
+            for (name, expected, scale) in expected {
+                let told = at(&rows, &format!("{}-{name}", of.0), frame.time);
+                assert!((told - expected).abs() <= 1e-11 * scale, "{dims}, {} {name}: {told} for {expected}", of.0);
+            }
+        }
+        println!("{dims} axes: points in boxes {counts:?}");
+        let of = |name: &str| counts.iter().filter(move |of| of.0 == name).map(|of| of.1).collect::<Vec<_>>();
+        assert!(of("toe")[0] > 0 && of("ahead")[0] == 0 && of("ahead")[3] > 0 && of("never") == [0; 4], "{counts:?}");
+        let warned = manifest(&one).warnings;
+        let never = QUANTITIES.map(|quantity| format!("never-{quantity}")).join(", ");
+        assert!(warned.iter().any(|warning| warning.contains(&format!("of the ground: {never};"))), "{warned:?}");
+        // Sums are exact: the same bits as long as what is summed is.
+        for ranks in [3, 1] {
+            let name = goes_the_same_way(&scratch, &["history.csv"], (ranks, 1e-9));
+            assert_eq!(manifest(&scratch.path(&name)).warnings, warned);
+        }
+    }
 }

@@ -7,6 +7,7 @@ use crate::error::StepError;
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid, Shape, transfer};
 use crate::model::Weighting;
+use crate::observe::Part;
 use crate::parallel::{Halo, agreed};
 use crate::points::Points;
 use crate::tensor::Vector;
@@ -39,20 +40,18 @@ pub fn stress_noise<const D: usize>(
     component: usize,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
-    let squares = Squares::of(grid, points, weighting, &|p| points.sigma.at(p).0[component], None, halo)?;
+    let squares = Squares::of(grid, (points, &Part::Whole), weighting, &|p| points.sigma.at(p).0[component], halo)?;
     Ok(if squares.mean == 0.0 { Noise::default() } else { squares.noise(squares.mean) })
 }
 
-/// Noise of the pressure -tr(sigma)/3, Pa, over the points between the corners of `window` (m, from the grid's lower
-/// corner), or over all.
+/// Noise of the pressure -tr(sigma)/3, Pa, over the points of a part.
 pub fn pressure_noise<const D: usize>(
     grid: &Grid<D>,
-    points: &Points<D>,
+    (points, part): (&Points<D>, &Part),
     weighting: Weighting,
-    window: Option<[Vector<D>; 2]>,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
-    Ok(Squares::of(grid, points, weighting, &|p| pressure(points, p), window, halo)?.noise(1.0))
+    Ok(Squares::of(grid, (points, part), weighting, &|p| pressure(points, p), halo)?.noise(1.0))
 }
 
 /// Part of Young's modulus up to which a pressure is the rounding of F: what flies freely has no other.
@@ -66,7 +65,7 @@ pub fn relative_pressure_noise<const D: usize>(
     (weighting, young): (Weighting, f64),
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
-    let squares = Squares::of(grid, points, weighting, &|p| pressure(points, p), None, halo)?;
+    let squares = Squares::of(grid, (points, &Part::Whole), weighting, &|p| pressure(points, p), halo)?;
     Ok(if squares.mean <= ROUNDING * young { Noise::default() } else { squares.noise(squares.mean) })
 }
 
@@ -75,7 +74,7 @@ pub(super) fn pressure<const D: usize>(points: &Points<D>, p: usize) -> f64 {
     -points.sigma.at(p).0[..3].iter().sum::<f64>() / 3.0
 }
 
-/// Means over the points of a stress and of its squared distances from its smooth parts.
+/// Means over the points of a part of a stress and of its squared distances from its smooth parts.
 struct Squares {
     mean: f64, // of the absolute value
     average: f64,
@@ -85,24 +84,20 @@ struct Squares {
 impl Squares {
     fn of<const D: usize>(
         grid: &Grid<D>,
-        points: &Points<D>,
+        (points, part): (&Points<D>, &Part),
         weighting: Weighting,
         stress: &(impl Fn(usize) -> f64 + Sync),
-        window: Option<[Vector<D>; 2]>,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(grid, points), StepError::OtherRank)?;
         let average = averaged(&shape, points, weighting, stress, halo);
         let planes = planes(grid, &shape, points, stress, halo);
-        let counts = |x: &Vector<D>| {
-            window.is_none_or(|[lower, upper]| (0..D).all(|axis| (lower[axis]..=upper[axis]).contains(&x[axis])))
-        };
         let of_column = |column: usize| {
             let mut sums = [const { Exact::ZERO }; 4];
             for number in shape.columns()[column].patches.clone() {
                 let patch = &shape.patches()[number];
                 let cell = grid.cell_at(patch.cell);
-                for p in patch.points.clone().filter(|&p| counts(&points.x[p])) {
+                for p in patch.points.clone().filter(|&p| part.holds(points, p)) {
                     let terms = terms(grid, &cell, &points.x[p]);
                     let on_plane: f64 = planes[number].iter().zip(&terms).map(|(a, b)| a * b).sum();
                     sums[0].add(1.0);

@@ -4,7 +4,7 @@ use crate::points::Points;
 use std::ops::Range;
 
 /// A part of all points.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Part {
     /// All of them.
     #[default]
@@ -13,6 +13,8 @@ pub enum Part {
     Material(u16),
     /// Those with these ids: a body.
     Ids(Range<u64>),
+    /// Those of a part that are between two corners now, m from the grid's lower corner; a point at a side is.
+    Within(Box<Part>, [[f64; 3]; 2]),
 }
 
 impl Part {
@@ -23,6 +25,10 @@ impl Part {
             Self::Whole => true,
             Self::Material(number) => points.material[p] == *number,
             Self::Ids(ids) => ids.contains(&points.id[p]),
+            Self::Within(of, [lower, upper]) => {
+                let x = &points.x[p];
+                (0..D).all(|axis| (lower[axis]..=upper[axis]).contains(&x[axis])) && of.holds(points, p)
+            }
         }
     }
 

@@ -5,8 +5,8 @@ use bsmpm::boundary::{Contact, Support};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Regime, Weighting};
 use bsmpm::observe::projection::projected_pressure;
-use bsmpm::observe::{Part, angular_momentum, centre_of_mass, heave, kinetic_energy, mean_stress, momentum};
-use bsmpm::observe::{farthest, front, mass, nearest, noise::stress_noise, percentile};
+use bsmpm::observe::{Part, angular_momentum, centre_of_mass, heave, kinetic_energy, mean_stress, mean_velocity};
+use bsmpm::observe::{farthest, front, is_occupied, mass, momentum, nearest, noise::stress_noise, percentile};
 use bsmpm::tensor::{Symmetric, Vector};
 
 /// A block of 4^D cells, one cell off the lower corner.
@@ -105,6 +105,7 @@ fn totals_are_those_of_a_material_or_of_all() {
         // Ids count column by column.
         (Part::Ids(0..32), 6.0, 1.0, 1.0),
         (Part::Ids(32..64), 6.0, 2.0, 1.0),
+        (Part::Within(Box::new(Part::Whole), [[1.5, 0.0, 0.0], [9.0, 9.0, 0.0]]), 6.0, 2.0, 1.0),
     ];
     for (part, m, x, a) in &parts {
         let (m, x, a) = (*m, *x, *a);
@@ -112,6 +113,7 @@ fn totals_are_those_of_a_material_or_of_all() {
         close(mass, m);
         close((middle - Vector::from([x, 1.5])).norm(), 0.0);
         close((p - Vector::from([2.0 * m, 3.0 * (x - 1.5) * m])).norm(), 0.0);
+        close((mean_velocity(points, part, &halo) - p / m).norm(), 0.0);
         close(spin, 3.0 * inertia(m, a, 2.0));
         // About another place the momentum has an arm.
         let about = angular_momentum(points, part, &center, &halo)[2];
@@ -123,7 +125,9 @@ fn totals_are_those_of_a_material_or_of_all() {
         close(percentile(points, part, (0, 50.0), &halo), x - 0.125);
         close(heave(points, part, &halo), 0.0);
     }
+    let nowhere = Part::Within(Box::new(Part::Material(1)), [[0.0; 3], [1.5, 9.0, 0.0]]);
     assert_eq!(centre_of_mass(points, &Part::Material(2), &halo), None);
+    assert!(centre_of_mass(points, &nowhere, &halo).is_none() && !is_occupied(points, &nowhere, &halo));
     assert_eq!(mean_stress(points, &Part::Ids(64..99), &halo), [0.0; 6]);
 }
 
