@@ -120,6 +120,16 @@ fn bodies_of_a_solid_meet_on_planes_of_the_grid_or_are_warned_of() {
         "extrude = { polygon = [[0, 0], [8, 0], [8, 2], [4, 2], [4, 4], [0, 4]], along = \"y\", from = 0, to = 2 }";
     let beside = "box = { lower = [4, 0, 2], upper = [6, 1, 3] }";
     assert_eq!(solid([step, beside]), ([vec![8], vec![], vec![4]], false));
+    // On a slope of 1 : 1 through crossings of grid lines, around a pile, and by a foot of one cell.
+    let [under, over] = ["[0, 0], [6, 0], [6, 6]", "[0, 0], [6, 6], [0, 6]"]
+        .map(|at| format!("extrude = {{ polygon = [{at}], along = \"y\", from = 0, to = 2 }}"));
+    assert_eq!(solid([&under, &over]), ([vec![], vec![], vec![]], true));
+    let pile = "extrude = { circle = { center = [4, 1], radius = 1 }, along = \"z\", from = 2, to = 4 }";
+    let around = format!("box = {{ lower = [0, 0, 0], upper = [8, 2, 4] }}\n    subtract = [{{ {pile} }}]");
+    assert_eq!(solid([&around, pile]), ([vec![], vec![], vec![4]], true));
+    let foot = "extrude = { polygon = [[0, 3], [4.5, 3], [4.5, 2], [5, 2], [5, 3], [8, 3], [8, 4], [0, 4]], \
+                along = \"y\", from = 0, to = 2 }";
+    assert_eq!(solid([lower, foot]), ([vec![], vec![], vec![4]], false));
     let between = lower.replace("8, 2, 2]", "8, 2, 2.2]");
     assert_eq!(solid([&between, &above.replace("[0, 0, 2]", "[0, 0, 2.2]")]), ([vec![], vec![], vec![]], true));
     assert_eq!(solid([lower, &above.replace("[0, 0, 2]", "[0, 0, 2.5]")]), ([vec![], vec![], vec![]], false));
