@@ -154,14 +154,14 @@ impl Ledger {
         self.directory.path()
     }
 
-    /// A row of `history.csv`; the checks whose time this is take their value.
-    pub fn history(&mut self, step: u64, time: f64, row: &[f64]) -> Result<(), Error> {
+    /// A row of `history.csv`; the checks whose time this is take their value, or none where a column's is not `told`.
+    pub fn history(&mut self, (step, time): (u64, f64), row: &[f64], told: &[bool]) -> Result<(), Error> {
         let mut cells = vec![Cell::Int(step), Cell::Float(time)];
         cells.extend(row.iter().map(|&value| Cell::Float(value)));
         for check in &mut self.manifest.checks {
             if (check.at.unwrap_or(self.end) - time).abs() <= 1e-6 * self.dt {
                 let column = self.columns.iter().position(|column| column.name == check.quantity);
-                check.value = column.map(|column| row[column]);
+                check.value = column.filter(|&column| told[column]).map(|column| row[column]);
             }
         }
         self.history.row(&cells)

@@ -31,6 +31,7 @@ pub struct Recorder<const D: usize> {
     histories: Vec<History>,
     parts: Vec<Part>,   // the points that each of them counts
     vacant: Vec<usize>, // histories in whose box no point has been yet
+    empty: Vec<usize>,  // those in whose box no point was at the last row
     followed: Vec<Option<u64>>,
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<Gauge>,
@@ -81,6 +82,7 @@ impl<const D: usize> Recorder<D> {
             histories: case.histories.clone(),
             parts: parts::<D>(case),
             vacant: state.vacant,
+            empty: Vec::new(),
             followed: state.followed,
             reacting: case.histories.iter().map(react).collect(),
             gauge: Gauge::of(case),
@@ -137,6 +139,20 @@ impl<const D: usize> Recorder<D> {
         lost
     }
 
+    /// Whether the number of every column of the last row is one: means and places of no point are none.
+    pub fn told(&self) -> Vec<bool> {
+        let is_sum = |history: &History| {
+            let quantity = &history.quantity;
+            matches!(quantity, Quantity::Mass { .. } | Quantity::Momentum { .. } | Quantity::AngularMomentum { .. })
+                || matches!(quantity, Quantity::KineticEnergy { .. })
+        };
+        let told = |(number, history): (usize, &History)| {
+            let is_told = is_sum(history) || !self.empty.contains(&number);
+            std::iter::repeat_n(is_told, history.columns().len())
+        };
+        self.histories.iter().enumerate().flat_map(told).collect()
+    }
+
     /// Names of the histories in whose box no point has been yet, if there are any.
     pub fn vacant(&self) -> Option<String> {
         let names: Vec<&str> = self.vacant.iter().map(|&number| &*self.histories[number].name).collect();
@@ -181,7 +197,9 @@ impl<const D: usize> Recorder<D> {
     ) -> Result<Vec<f64>, StepError> {
         let energy = if model.balances_energy { self.energy(model, points, (t, report), halo) } else { Vec::new() };
         self.work.iter_mut().zip(&report.strips).for_each(|(sum, strip)| *sum += strip.work);
-        self.vacant.retain(|&number| !observe::is_occupied(points, &self.parts[number], halo));
+        let boxes = (0..self.parts.len()).filter(|&number| matches!(self.parts[number], Part::Within(..)));
+        self.empty = boxes.filter(|&number| !observe::is_occupied(points, &self.parts[number], halo)).collect();
+        self.vacant.retain(|number| self.empty.contains(number));
         let mut row = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
             let mut values = match &history.quantity {

@@ -229,7 +229,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         if let (Some(ledger), Some(front)) = (&mut self.ledger, self.recorder.front(&row)) {
             ledger.front(front);
         }
-        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history(step, time, &row));
+        let written =
+            self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history((step, time), &row, &self.recorder.told()));
         self.require(written);
     }
 

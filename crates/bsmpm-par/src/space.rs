@@ -55,9 +55,12 @@ impl Need {
         let (own, mut points) = (simulation.points.len() as u64, 0_u64);
         world.all_reduce_into(&own, &mut points, SystemOperation::sum());
         let (time, begun) = (simulation.time(), simulation.steps() > 0);
-        // A column that points carry from the first step on.
-        let is_to_come = simulation.model.stabilisation.averages() && simulation.points.dilation.is_none();
-        let to_come = if is_to_come { points * size_of::<f64>() as u64 } else { 0 };
+        // Columns that points carry from the first step on.
+        let (model, own) = (&simulation.model, &simulation.points);
+        let is_damped = !model.damping.is_empty() && model.stabilisation.smooths();
+        let dilation = u64::from(model.stabilisation.averages() && own.dilation.is_none());
+        let smoothing = 6 * u64::from(is_damped && own.smoothing.is_none());
+        let to_come = points * (dilation + smoothing) * size_of::<f64>() as u64;
         let (columns, guess) = simulation.arrays();
         let room = checkpoint::room(world, &Contents { columns, guess, state: &[] });
         // What is to be deleted counts as free, not as there.

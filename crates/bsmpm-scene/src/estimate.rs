@@ -271,6 +271,8 @@ impl Case {
         let systems = Systems::of(by, (dims * occupied, entries), reach, self.flow.is_some());
         let (point, vectors) = if dims == 3 { (POINT_IN_SPACE, VECTORS * 3 / 2) } else { (POINT, VECTORS) };
         let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
+        let is_damped = self.materials.iter().any(|named| named.retardation > 0.0);
+        let smoothing = if is_damped && self.stabilisation.smooths() { 8 * if dims == 3 { 6 } else { 4 } } else { 0 };
         let passing = systems.built.max(points * SAVED);
         let water = self.pressures().map(|(pressures, entries)| {
             // Solved by itself, as a part of the directions.
@@ -281,7 +283,7 @@ impl Case {
             (pressures, held + system.held, system.repeated)
         });
         let (pressures, wet, wet_repeated) = water.unwrap_or_default();
-        let bytes = points * (point + lowered)
+        let bytes = points * (point + lowered + smoothing)
             + occupied * stencil
             + room_nodes(self) * (every + vectors)
             + systems.held

@@ -216,9 +216,12 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         let start = points.x[p] - points.u[p];
         let told = self.boundary.reach.get(usize::from(points.material[p])).zip(self.grid.locate(&start));
         told.map_or_else(Span::default, |(share, cell)| {
-            let whole = (self.grid.cell_box(&cell).1 * (2.0 * share)).product() * K::weight(&start);
-            let reach = self.boundary.reach_along(&self.grid, points, p, D - 1);
-            Span { reach, filled: points.volume[p] / whole }
+            let (lower, edges) = self.grid.cell_box(&cell);
+            let parts = edges * (2.0 * share);
+            let filled = points.volume[p] / (parts.product() * K::weight(&start));
+            let span = Span::of(start[D - 1] - lower[D - 1], parts[D - 1], filled);
+            let stretched = self.boundary.reach_along(&self.grid, points, p, D - 1) / (0.5 * parts[D - 1]);
+            Span { reach: span.reach * stretched, ..span }
         })
     }
 

@@ -43,13 +43,15 @@ impl Case {
         let named = &self.materials[body.material];
         let density = named.density.unwrap_or(0.0);
         let Some((saturated, table)) = named.saturated.zip(self.table(at[0])) else { return density };
+        // The lower side of its cell along an axis, and the length of its part of that.
         let part = |(axis, at): (&GridAxis, f64)| {
-            let cell = axis.first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at);
-            axis.cell(cell.min(axis.cells() - 1)) / body.points_per_cell as f64
+            let cell = axis.first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at).min(axis.cells() - 1);
+            (axis.lower() + axis.breakpoint(cell), axis.cell(cell) / body.points_per_cell as f64)
         };
-        let parts: Vec<f64> = self.grid.axes.iter().zip(at).map(part).collect();
+        let parts: Vec<(f64, f64)> = self.grid.axes.iter().zip(at).map(part).collect();
         let up = parts.len() - 1;
-        let span = Span { reach: 0.5 * parts[up], filled: volume / parts.iter().product::<f64>() };
+        let filled = volume / parts.iter().map(|(_, length)| length).product::<f64>();
+        let span = Span::of(at[up] - parts[up].0, parts[up].1, filled);
         density + span.share_below(table - at[up]) * (saturated - density)
     }
 

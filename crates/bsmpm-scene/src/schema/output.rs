@@ -122,7 +122,8 @@ pub(super) static HISTORY: Table = Table {
             Optional,
             "of the same quantities: the points that are in it at that time, of those of the material or body if one is given; it \
              stays where it is in space: for soil that a box has at the start give that a body of its own. With no point in it sums \
-             and means are 0, and places the grid's lower corner; a run in which none ever is in it ends with a warning",
+             and means are 0, and places the grid's lower corner; a check of a mean or place then fails, and a run in which none ever \
+             is in it ends with a warning",
         ),
     ],
     exclusive: &[

@@ -235,5 +235,10 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
             let name = goes_the_same_way(&scratch, &["history.csv"], (ranks, 1e-9));
             assert_eq!(manifest(&scratch.path(&name)).warnings, warned);
         }
+        // A sum over no point is zero; no mean is any number.
+        for (quantity, code) in [("never-mass", 0), ("never-plastic-strain-largest", 77)] {
+            scratch.write("checked.toml", format!("{case}[[check]]\nquantity = \"{quantity}\"\nmax = 1.0\n"));
+            scratch.mpirun(1, &["checked.toml", "-q", "-o", "checked", "--force"]).expect(code);
+        }
     }
 }

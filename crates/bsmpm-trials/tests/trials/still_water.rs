@@ -79,12 +79,22 @@ fn submerged_level_ground_has_its_buoyant_weight_and_rests() {
     }
 }
 
-/// Points that the level cuts are wet as far as they lie below it, also where the surface cuts their cells.
+/// Points that the level cuts are wet as far as they lie below it, also where the surface cuts their cells, of bodies
+/// whose points keep their places in the cell then and of such whose do not.
 #[test]
 fn the_ground_rests_with_its_weight_wherever_the_level_cuts_points() {
     let reaction = "[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n";
-    for (top, level) in [(9.0, 6.55), (9.0, 7.2), (8.9, 8.9), (8.8, 8.4)] {
-        let ground = GROUND.replace(", 9]", &format!(", {top}]")) + reaction + TIGHT;
+    let polygon = GROUND.to_owned();
+    let cuboid = changed(&polygon, LEVEL, "box = { lower = [-1, 2], upper = [3, 9] }");
+    for (shape, top, level) in [
+        (&polygon, 9.0, 6.55),
+        (&polygon, 8.9, 8.9),
+        (&polygon, 8.8, 8.4),
+        (&cuboid, 9.0, 7.2),
+        (&cuboid, 8.8, 8.4),
+        (&cuboid, 8.1, 8.05),
+    ] {
+        let ground = shape.replace(", 9]", &format!(", {top}]")) + reaction + TIGHT;
         let scratch = Scratch::with_case(&changed(&ground, "level = 12.0", &format!("level = {level}")));
         scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
         let found = at(&history(&scratch.path("out")), "reaction-y", 1.0);

@@ -79,8 +79,17 @@ pub struct Span {
 }
 
 impl Span {
-    /// Share of the point below a table that is `above` (m) its place. Where its part sticks out of the body, or has
-    /// taken what is too little for a point of its own, it has another volume than the part.
+    /// Of a point `at` (m) above the lower side of its cell, whose parts have this height (m), with its volume by that
+    /// of a part. In the middle of a part it is what the body fills of that from below, as bodies are cut by their
+    /// surface more often than by their base, with what a neighbour had too little of for a point of its own. Elsewhere
+    /// it is as thick as it has volume.
+    pub fn of(at: f64, part: f64, filled: f64) -> Self {
+        let row = at / part - 0.5;
+        let whole = (row - row.round()).abs() < 1e-6 && (0.5 - 1e-9..=2.0).contains(&filled);
+        if whole { Self { reach: 0.5 * part, filled } } else { Self { reach: 0.5 * part * filled, filled: 1.0 } }
+    }
+
+    /// Share of the point below a table that is `above` (m) its place.
     pub fn share_below(self, above: f64) -> f64 {
         let Self { reach, filled } = self;
         match reach * filled > 0.0 {
