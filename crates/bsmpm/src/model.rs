@@ -211,8 +211,13 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         model
     }
 
-    /// How far point `p`, as it is deformed, spans up and down.
+    /// How far point `p`, as it is deformed, spans up and down for still water. With pressures of its own it has the
+    /// still water's at its place, as their sum is what acts.
     pub fn span(&self, points: &Points<D>, p: usize) -> Span {
+        let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());
+        if flow.is_some_and(|flow| flow.soils[usize::from(points.material[p])].is_some()) {
+            return Span::default();
+        }
         let start = points.x[p] - points.u[p];
         let told = self.boundary.reach.get(usize::from(points.material[p])).zip(self.grid.locate(&start));
         told.map_or_else(Span::default, |(share, cell)| {

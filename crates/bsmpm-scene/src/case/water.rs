@@ -51,7 +51,9 @@ impl Case {
         let parts: Vec<(f64, f64)> = self.grid.axes.iter().zip(at).map(part).collect();
         let up = parts.len() - 1;
         let filled = volume / parts.iter().map(|(_, length)| length).product::<f64>();
-        let span = Span::of(at[up] - parts[up].0, parts[up].1, filled);
+        let flows = self.flow.as_ref().is_some_and(|flow| flow.soils[body.material].is_some());
+        let whole = || Span::of(at[up] - parts[up].0, parts[up].1, filled);
+        let span = if flows { Span::default() } else { whole() };
         density + span.share_below(table - at[up]) * (saturated - density)
     }
 
