@@ -42,7 +42,8 @@ impl Case {
     pub(crate) fn density_at(&self, body: &Body, at: [f64; 3], volume: f64) -> f64 {
         let named = &self.materials[body.material];
         let density = named.density.unwrap_or(0.0);
-        let Some((saturated, table)) = named.saturated.zip(self.table(at[0])) else { return density };
+        let table = self.water.as_ref().and_then(|water| water.table.table(at[0], 0.0));
+        let Some((saturated, (table, slope))) = named.saturated.zip(table) else { return density };
         // The lower side of its cell along an axis, and the length of its part of that.
         let part = |(axis, at): (&GridAxis, f64)| {
             let cell = axis.first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at).min(axis.cells() - 1);
@@ -54,7 +55,7 @@ impl Case {
         let flows = self.flow.as_ref().is_some_and(|flow| flow.soils[body.material].is_some());
         let whole = || Span::of(at[up] - parts[up].0, parts[up].1, filled);
         let span = if flows { Span::default() } else { whole() };
-        density + span.share_below(table - at[up]) * (saturated - density)
+        density + span.under(slope).share_below(table - at[up]) * (saturated - density)
     }
 
     /// Pa  weight of a body vertically above `at` (m, in the case's coordinates) under the acceleration `g` (m/s2),

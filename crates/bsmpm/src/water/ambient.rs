@@ -89,6 +89,12 @@ impl Span {
         if whole { Self { reach: 0.5 * part, filled } } else { Self { reach: 0.5 * part * filled, filled: 1.0 } }
     }
 
+    /// The same under a table of this slope: none if that slopes, as it often is the surface of the ground, which cuts
+    /// the points itself.
+    pub fn under(self, slope: f64) -> Self {
+        if slope == 0.0 { self } else { Self::default() }
+    }
+
     /// Share of the point below a table that is `above` (m) its place.
     pub fn share_below(self, above: f64) -> f64 {
         let Self { reach, filled } = self;
@@ -132,7 +138,7 @@ impl<'a> StillWater<'a> {
         let x = &points.x[p];
         let mut force = Vector::zeros();
         let Some((height, slope)) = self.ambient.table(x[0], self.t) else { return force };
-        let below = span.share_below(height - x[D - 1]);
+        let below = span.under(slope).share_below(height - x[D - 1]);
         if below > 0.0 {
             let volume = points.volume[p] * below;
             if slope != 0.0 {
