@@ -14,8 +14,8 @@ pub(crate) struct Surface {
     triangles: Vec<[[f64; 3]; 3]>,
     /// lower and upper corner of the cuboid around it
     bounds: [[f64; 3]; 2],
-    /// bins along x and y
-    count: [usize; 2],
+    /// places between the bins along x and y, so that as many corners lie in each
+    cuts: [Vec<f64>; 2],
     /// triangles whose rectangle reaches a bin, x running fastest
     bins: Vec<Vec<u32>>,
 }
@@ -54,25 +54,31 @@ impl Surface {
     fn binned(triangles: Vec<[[f64; 3]; 3]>) -> Self {
         let side = (triangles.len() as f64).sqrt().ceil() as usize;
         let bounds = bounds(&triangles);
-        let made = Self { triangles, bounds, count: [side; 2], bins: Vec::new() };
-        let mut bins = vec![Vec::new(); side * side];
+        let cuts = [0, 1].map(|axis| {
+            let mut places: Vec<f64> = triangles.iter().flatten().map(|corner| corner[axis]).collect();
+            places.sort_by(f64::total_cmp);
+            let mut cuts: Vec<f64> = (1..side).map(|k| places[k * places.len() / side]).collect();
+            cuts.dedup();
+            cuts
+        });
+        let made = Self { triangles, bounds, cuts, bins: Vec::new() };
+        let [along, across] = made.cuts.each_ref().map(|cuts| cuts.len() + 1);
+        let mut bins = vec![Vec::new(); along * across];
         for (number, triangle) in (0_u32..).zip(&made.triangles) {
             let reach = |axis: usize| {
                 let ends = triangle.map(|corner| made.bin(axis, corner[axis]));
                 ends.iter().min().copied().unwrap_or(0)..=ends.iter().max().copied().unwrap_or(0)
             };
             for y in reach(1) {
-                reach(0).for_each(|x| bins[y * side + x].push(number));
+                reach(0).for_each(|x| bins[y * along + x].push(number));
             }
         }
         Self { bins, ..made }
     }
 
-    /// The bin of a place within the bounds, along an axis.
+    /// The bin of a place along an axis.
     fn bin(&self, axis: usize, at: f64) -> usize {
-        let [lower, upper] = [self.bounds[0][axis], self.bounds[1][axis]];
-        let part = (at - lower) / (upper - lower);
-        ((part * self.count[axis] as f64) as usize).min(self.count[axis] - 1)
+        self.cuts[axis].partition_point(|cut| *cut <= at)
     }
 
     pub(crate) fn moved(mut self, by: [f64; 3]) -> Self {
@@ -116,7 +122,7 @@ impl Surface {
         if (0..2).any(|axis| !(self.bounds[0][axis] <= at[axis] && at[axis] <= self.bounds[1][axis])) {
             return Vec::new();
         }
-        let bin = &self.bins[self.bin(1, at[1]) * self.count[0] + self.bin(0, at[0])];
+        let bin = &self.bins[self.bin(1, at[1]) * (self.cuts[0].len() + 1) + self.bin(0, at[0])];
         let cut = bin.iter().filter_map(|number| {
             let triangle = &self.triangles[*number as usize];
             let turns = around(triangle, at);
