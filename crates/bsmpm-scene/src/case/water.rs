@@ -53,8 +53,7 @@ impl Case {
         let up = parts.len() - 1;
         let filled = volume / parts.iter().map(|(_, length)| length).product::<f64>();
         let flows = self.flow.as_ref().is_some_and(|flow| flow.soils[body.material].is_some());
-        let whole = || Span::of(at[up] - parts[up].0, parts[up].1, filled);
-        let span = if flows { Span::default() } else { whole() };
+        let span = if flows { Span::default() } else { Span::of(at[up] - parts[up].0, parts[up].1, filled) };
         density + span.under(slope).share_below(table - at[up]) * (saturated - density)
     }
 

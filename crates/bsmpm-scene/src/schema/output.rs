@@ -89,8 +89,8 @@ pub(super) static HISTORY: Table = Table {
             Name,
             Optional,
             "of quantities of all points: those of a material, of mass, momentum, centre-of-mass, angular-momentum, \
-             kinetic-energy, mean-stress, mean-displacement, mean-velocity, plastic-strain, pore-pressures, pressure-noise, runout, height, \
-             max-displacement and heave",
+             kinetic-energy, mean-stress, mean-displacement, mean-velocity, plastic-strain, pore-pressures, pressure-noise, \
+             runout, height, max-displacement and heave",
         ),
         key("body", Name, Optional, "of the same quantities: the points of a body by its name, instead of material"),
         key("from", Pair(In::Length, Range::ANY), Optional, "of section-forces: where the line begins"),

@@ -143,8 +143,8 @@ impl Response {
         (self.branch() != Branch::Elastic).then(|| self.trial.assemble(self.moduli.stress(plastic)))
     }
 
-    /// How that changes with a spatial gradient, Pa: what the bulk modulus after the return differs by from the law's
-    /// where elasticity is not linear takes its part of the mean stress.
+    /// How what the return took changes with a spatial gradient, Pa: what the bulk modulus after the return differs by
+    /// from the law's where elasticity is not linear takes its part of the mean stress.
     pub fn change_of_returned(&self) -> Option<impl Fn(&Tensor) -> Tensor + use<>> {
         let (trial, own) = (self.unreturned()?.tangent(), self.tangent());
         let stiffer = self.moduli.bulk() / self.flowed.elastic_moduli(self.moduli).bulk() - 1.0;

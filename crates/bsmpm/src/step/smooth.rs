@@ -46,8 +46,8 @@ pub fn average_b_e<K, const D: usize>(
 pub fn change<const D: usize>(before: &Packed<D, Symmetric>, after: &Packed<D, Symmetric>) -> Packed<D, Symmetric> {
     let change = |p: usize| {
         let (before, after) = (before.at(p), after.at(p));
-        let inverse = before.full().cholesky().and_then(|factor| factor.l().try_inverse());
-        let inverse = inverse.filter(|_| before != after)?;
+        let factor = (before != after).then(|| before.full().cholesky()).flatten()?;
+        let inverse = factor.l().try_inverse()?;
         Some(Symmetric::of(&(inverse * after.full() * inverse.transpose())))
     };
     threads::each(before.len(), |p| change(p).unwrap_or(Symmetric::IDENTITY)).into_iter().collect()

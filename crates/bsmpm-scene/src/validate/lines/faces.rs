@@ -31,7 +31,9 @@ pub(super) fn interfaces(case: &Case, found: &mut FoundLine) {
             if meetings.is_empty() && ratios[0].max(ratios[1]) >= UNLIKE {
                 let [a, b] = [a, b].map(|body| &case.materials[body.material].name);
                 let doubt = format!(
-                    "material.{a} and material.{b}: bodies of them are less than a cell apart, and where they meet was not                      found: if they do inside cells, stress there is wrong by tens of per cent within about three cells;                      repeat breakpoints by knots"
+                    "material.{a} and material.{b}: bodies of them are less than a cell apart, and where they meet was not \
+                     found: if they do inside cells, stress there is wrong by tens of per cent within about three cells; \
+                     repeat breakpoints by knots"
                 );
                 found.doubts.entry(format!("{a} {b} apart")).or_insert(doubt);
             }
