@@ -14,7 +14,9 @@ pub use element::{ElementStage, ElementTest};
 pub use flow::{Drain, DrainSite, Flow, Inflow};
 pub use history::{Check, Column, Counted, Face, History, Made, Quantity};
 pub(crate) use loads::keeps_direction;
-pub use loads::{Footing, Initial, LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Shares, Site, Traction};
+pub use loads::{
+    Footing, Initial, LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Shares, Site, Traction, Triangle,
+};
 pub use profile::Profile;
 pub use rigid::{Rigid, RigidShape, RigidSolid};
 pub use stage::{Acting, FaceSupport, Stage};

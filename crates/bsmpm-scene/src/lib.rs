@@ -45,7 +45,7 @@ pub use case::{
     Acting, Analysis, Base, Body, Case, Check, Checkpoint, Column, Counted, Drain, DrainSite, ElementStage,
     ElementTest, Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, Inflow, Initial, Linear,
     LoadedLine, Made, MotionPath, NamedMaterial, Nonlinear, Output, Plate, PointLoad, Prescribed, Profile, Push,
-    Quantity, Rigid, RigidShape, Shares, Site, Solver, Stage, Support, Traction, Water,
+    Quantity, Rigid, RigidShape, Shares, Site, Solver, Stage, Support, Traction, Triangle, Water,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

@@ -20,7 +20,7 @@ pub(crate) use raster::Raster;
 pub(crate) use simple::{PolygonFault, area, bounds, fault};
 pub(crate) use skin::skin;
 pub(crate) use solid::{Section, SolidShape};
-pub(crate) use surface::Surface;
+pub(crate) use surface::{Surface, edges_of};
 pub(crate) use sweep::{Window, solid, sweep};
 
 pub(crate) use volume::{bounds as solid_bounds, left as left_of_box};

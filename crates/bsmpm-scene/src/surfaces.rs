@@ -1,6 +1,6 @@
 //! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
-use crate::case::keeps_direction;
+use crate::case::{Triangle, keeps_direction};
 use crate::grid::vector;
 use crate::{Acting, Base, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Shares, Site};
 use bsmpm::boundary::rigid::Outline;
@@ -126,7 +126,8 @@ fn steady<const D: usize>(load: Load<D>, shares: &Shares, keeps_direction: bool)
     (part(0), (1..D).map(part).collect())
 }
 
-/// Points of a line, with unit normals to the left of a segment, towards the middle of a circle, along a plate's axis.
+/// Points of a line, with unit normals to the left of a segment, towards the middle of a circle, along a plate's axis,
+/// where triangles are seen to turn counter-clockwise from.
 fn on_line<K: Kinematics<D>, const D: usize>(
     case: &Case,
     grid: &Grid<D>,
@@ -134,20 +135,36 @@ fn on_line<K: Kinematics<D>, const D: usize>(
 ) -> (Vec<SurfacePoint<D>>, Vec<Vector<D>>) {
     let across = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
     let place = |at: [f64; 2]| vector(case.grid.local(at));
-    match *line {
-        LoadedLine::Segment { from, to } => {
+    match line {
+        &LoadedLine::Segment { from, to } => {
             let (from, to) = (place(from), place(to));
             let points = surface::along::<K, D>(grid, &from, &to, across);
             points.into_iter().map(|point| (point, normal(&from, &to))).unzip()
         }
-        LoadedLine::Circle { center, radius } => {
+        &LoadedLine::Circle { center, radius } => {
             around::<K, D>(grid, &place(center), radius, across).into_iter().unzip()
         }
         LoadedLine::Plate(plate) => {
-            let points = on_plate::<K, D>(case, grid, &plate, across);
+            let points = on_plate::<K, D>(case, grid, plate, across);
             points.into_iter().map(|point| (point, unit(plate.normal()))).unzip()
         }
+        LoadedLine::Triangles(triangles) => {
+            let base = vector::<D, _>(case.grid.lower());
+            let longest = case.grid.shortest() / across as f64;
+            let of = |triangle: &Triangle| {
+                let corners = triangle.map(|at| vector::<D, _>(at) - base);
+                let normal = normal_of(triangle);
+                surface::triangle::<D>(corners, longest).into_iter().map(move |point| (point, vector(normal)))
+            };
+            triangles.iter().flat_map(of).unzip()
+        }
     }
+}
+
+/// Unit normal of a triangle, from which its corners turn counter-clockwise; 0 of one without area.
+pub(crate) fn normal_of([a, b, c]: &Triangle) -> [f64; 3] {
+    let [along, across] = [b, c].map(|end| Vector::<3>::from(*end) - Vector::from(*a));
+    along.cross(&across).try_normalize(0.0).unwrap_or_default().into()
 }
 
 /// The course of a load that begins at the time `since`, where nothing of it acts yet.
@@ -173,8 +190,9 @@ fn around<K: Kinematics<D>, const D: usize>(
             vector([cos, sin])
         };
         let place = |part: f64| center + outward(part) * radius;
-        let (x, ends) = (place(0.5), [0.0, 1.0].map(place));
-        (SurfacePoint { x, area: length / pieces as f64 * K::weight(&x), ends }, -outward(0.5))
+        let (x, [a, b]) = (place(0.5), [0.0, 1.0].map(place));
+        let area = length / pieces as f64 * K::weight(&x);
+        (SurfacePoint { x, area, corners: [a, a, b, b] }, -outward(0.5))
     };
     (0..pieces).map(point).filter(|(point, _)| grid.locate(&point.x).is_some()).collect()
 }

@@ -20,6 +20,7 @@ mod reduction;
 mod rigid;
 mod section;
 mod shape;
+mod sheet;
 mod side;
 mod site;
 mod solid;

@@ -5,6 +5,7 @@ use bsmpm::boundary::StripContact;
 use bsmpm::material::Profile;
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
+use std::sync::Arc;
 
 /// A displacement as a function of time, linear between its rows; zero at the start, constant after the last row.
 #[derive(Clone, Debug, PartialEq)]
@@ -163,8 +164,11 @@ pub struct Traction {
     pub amplitude: Shares,
 }
 
+/// m  corners of a triangle in space
+pub type Triangle = [[f64; 3]; 3];
+
 /// Where a traction acts at the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum LoadedLine {
     /// m  a segment
     Segment {
@@ -182,6 +186,8 @@ pub enum LoadedLine {
     },
     /// Of a solid.
     Plate(Plate),
+    /// Of a solid: a curved surface, turned alike
+    Triangles(Arc<[Triangle]>),
 }
 
 /// What a traction is.
@@ -195,8 +201,8 @@ pub enum Push {
     Pressure {
         /// the pressure
         profile: Profile,
-        /// 1 where the body lies on the left of a segment from its first end, inside a circle, or beyond a plate along
-        /// its normal, else -1
+        /// 1 where the body lies on the left of a segment from its first end, inside a circle, beyond a plate along its
+        /// normal, or where triangles are seen to turn counter-clockwise from, else -1
         side: f64,
     },
 }
@@ -206,16 +212,20 @@ impl Traction {
     pub fn ends(&self) -> Option<[[f64; 2]; 2]> {
         match self.line {
             LoadedLine::Segment { from, to } => Some([from, to]),
-            LoadedLine::Circle { .. } | LoadedLine::Plate(_) => None,
+            LoadedLine::Circle { .. } | LoadedLine::Plate(_) | LoadedLine::Triangles(_) => None,
         }
     }
 
     /// Pa  the largest force per area when fully applied.
     pub fn largest(&self) -> f64 {
-        let ends = match self.line {
+        let ends = match &self.line {
             LoadedLine::Segment { from, to } => [from[1], to[1]],
             LoadedLine::Circle { center, radius } => [center[1] - radius, center[1] + radius],
             LoadedLine::Plate(plate) => [plate.lower[2], plate.upper[2]],
+            LoadedLine::Triangles(all) => {
+                let heights = || all.iter().flatten().map(|corner| corner[2]);
+                [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)]
+            }
         };
         let [low, high] = ends.map(|height| match self.push {
             Push::Stress(stress) => stress.iter().fold(0.0, |sum: f64, along| sum.hypot(along.at(height))),

@@ -230,28 +230,46 @@ fn crossing(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> Option<([f64; 2], [[[f6
 
 /// Whether every edge has as many triangles on one side as on the other.
 fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), String> {
+    let sum = |sides: &Vec<EdgeSide>| sides.iter().map(|side| if side.upwards { 1 } else { -1 }).sum::<i64>();
+    let edges = edges_of(triangles);
+    let open = edges.values().filter(|sides| sum(sides) != 0).count();
+    match edges.values().find(|sides| sum(sides) != 0) {
+        None => Ok(()),
+        Some(sides) => Err(format!(
+            "it is not closed: {open} of its edges, the first from {:?} to {:?}, have not one triangle on each side that \
+             turn alike; mend it with a mesh tool (weld vertices, fill holes, make normals consistent)",
+            sides[0].ends[0], sides[0].ends[1]
+        )),
+    }
+}
+
+/// A triangle at an edge.
+pub(crate) struct EdgeSide {
+    /// its number
+    pub(crate) triangle: usize,
+    /// whether it turns from the edge's first corner to its second, in the order of corners in the file
+    pub(crate) upwards: bool,
+    /// m  the edge's ends, as the triangle turns
+    pub(crate) ends: [[f64; 3]; 2],
+}
+
+/// Edges by the numbers of their corners, with the triangles at them.
+pub(crate) fn edges_of(triangles: &[[[f64; 3]; 3]]) -> BTreeMap<[usize; 2], Vec<EdgeSide>> {
     let mut numbers = HashMap::new();
     let mut number = |at: [f64; 3]| {
         let next = numbers.len();
         *numbers.entry(at.map(f64::to_bits)).or_insert(next)
     };
-    let mut edges: BTreeMap<[usize; 2], (i64, [[f64; 3]; 2])> = BTreeMap::new();
-    for triangle in triangles {
+    let mut edges: BTreeMap<[usize; 2], Vec<EdgeSide>> = BTreeMap::new();
+    for (triangle, corners) in triangles.iter().enumerate() {
         for k in 0..3 {
-            let ends = [triangle[k], triangle[(k + 1) % 3]];
+            let ends = [corners[k], corners[(k + 1) % 3]];
             let [from, to] = ends.map(&mut number);
-            let edge = edges.entry([from.min(to), from.max(to)]).or_insert((0, ends));
-            edge.0 += if from < to { 1 } else { -1 };
+            let sides = edges.entry([from.min(to), from.max(to)]).or_default();
+            sides.push(EdgeSide { triangle, upwards: from < to, ends });
         }
     }
-    let open = edges.values().filter(|(sum, _)| *sum != 0).count();
-    match edges.values().find(|(sum, _)| *sum != 0) {
-        None => Ok(()),
-        Some((_, [from, to])) => Err(format!(
-            "it is not closed: {open} of its edges, the first from {from:?} to {to:?}, have not one triangle on each \
-             side that turn alike; mend it with a mesh tool (weld vertices, fill holes, make normals consistent)"
-        )),
-    }
+    edges
 }
 
 fn bounds(triangles: &[[[f64; 3]; 3]]) -> [[f64; 3]; 2] {

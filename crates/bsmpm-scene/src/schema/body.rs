@@ -86,9 +86,10 @@ static TERRAIN: Table = Table {
 
 pub(super) const HEIGHTS: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY), (In::Length, Range::ANY)]);
 
-static SURFACE: Table = Table {
+pub(super) static SURFACE: Table = Table {
     header: "surface = { triangles, scale }",
-    doc: "What a closed surface of triangles encloses; shells may lie inside one another, turned the other way",
+    doc: "Of a body what a closed surface of triangles encloses (shells may lie inside one another, turned the other \
+          way); of a traction the surface, which may be open, in one piece",
     keys: &[
         key("triangles", TRIANGLES, Required, "rows [x, y, z] of three corners each; a file may also be STL"),
         key(

@@ -140,13 +140,21 @@ static RUBS: Table = Table {
 
 pub(super) static TRACTION: Table = Table {
     header: "[[traction]]",
-    doc: "A load on a segment of a body's surface, on a circle, or of a solid on a rectangle or disc, which it follows",
+    doc: "A load on a segment of a body's surface, on a circle, or of a solid on a rectangle, disc, sphere or triangles, \
+          which it follows",
     keys: &[
         key("from", PLACE, Optional, "one end of the segment at the start"),
         key("to", PLACE, Optional, "the other end"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
         key("rectangle", RECTANGLE, Optional, "of a solid, instead: a box whose corners are alike along one axis"),
         key("disc", Kind::Table(&DISC), Optional, "of a solid, instead: a disc, the part of it inside the grid"),
+        key(
+            "sphere",
+            Kind::Table(&body::SPHERE),
+            Optional,
+            "of a solid, instead: a sphere, the part of it inside the grid",
+        ),
+        key("surface", Kind::Table(&body::SURFACE), Optional, "of a solid, instead: a surface of triangles at bodies"),
         key(
             "stress",
             PairProfile(In::Stress, Range::ANY, &STRESSES_PROFILE),
@@ -178,8 +186,8 @@ pub(super) static TRACTION: Table = Table {
         key("name", Name, Optional, "what stages call it"),
     ],
     exclusive: &[
-        one_of(&["from", "circle", "rectangle", "disc"], true),
-        one_of(&["to", "circle", "rectangle", "disc"], true),
+        one_of(&["from", "circle", "rectangle", "disc", "sphere", "surface"], true),
+        one_of(&["to", "circle", "rectangle", "disc", "sphere", "surface"], true),
         one_of(&["stress", "pressure", "stress_path", "pressure_path"], true),
         one_of(&["ramp", "amplitude", "stress_path", "pressure_path"], false),
     ],

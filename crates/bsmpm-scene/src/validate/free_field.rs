@@ -79,6 +79,9 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
         LoadedLine::Segment { from, to } => within(from[0], to[0]),
         LoadedLine::Circle { center, radius } => within(center[0] - radius, center[0] + radius),
         LoadedLine::Plate(plate) => within(plate.lower[0], plate.upper[0]),
+        LoadedLine::Triangles(all) => {
+            all.iter().any(|[a, b, c]| within(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0])))
+        }
     };
     let site = |site: &Site| match site {
         Site::Face(face) => face.axis == 1,

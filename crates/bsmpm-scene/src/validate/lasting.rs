@@ -80,7 +80,7 @@ fn net(case: &Case, traction: &Traction, axis: usize) -> f64 {
             let inside = |at: &[f64; 2]| (0..2).all(|k| lower[k] <= at[k] && at[k] <= upper[k]);
             ring(center, radius).filter(inside).map(|at| (at, [0, 1].map(|k| (center[k] - at[k]) / radius))).collect()
         }
-        LoadedLine::Plate(_) => Vec::new(), // of a solid, of which no face absorbs
+        LoadedLine::Plate(_) | LoadedLine::Triangles(_) => Vec::new(), // of a solid, of which no face absorbs
     };
     let pushed = |([_, y], normal): &([f64; 2], [f64; 2])| match traction.push {
         Push::Stress(stress) => stress[axis].at(*y),

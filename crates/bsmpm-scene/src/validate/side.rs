@@ -1,30 +1,40 @@
 //! On which side of lines and plates bodies lie.
 
 use super::place::{along, ring, side_of_bodies};
+use super::sheet::middle;
 use super::site::places;
-use crate::case::{Acting, Body, Case, LoadedLine, Push, Site};
+use crate::case::{Acting, Body, Case, LoadedLine, Push, Site, Triangle};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
+use crate::surfaces::normal_of;
 
 /// On which side of a line bodies lie: 1 to the left of a segment, towards the middle of a circle, in the sense of a
-/// plate's axis, else -1; `None` of both, or none.
+/// plate's axis, where triangles are seen to turn counter-clockwise from, else -1; `None` of both, or none.
 pub(super) fn side<'a>(line: &LoadedLine, grid: &GridSpec, bodies: impl Iterator<Item = &'a Body>) -> Option<f64> {
     let bodies: Vec<&Body> = bodies.collect();
     let holds = |at: [f64; 2]| bodies.iter().any(|body| body.region.contains(at));
-    let count = |off: f64| match *line {
-        LoadedLine::Segment { from, to } => {
+    let count = |off: f64| match line {
+        &LoadedLine::Segment { from, to } => {
             let (x, y) = (to[0] - from[0], to[1] - from[1]);
             let (x, y) = (-y / x.hypot(y) * off, x / x.hypot(y) * off);
             along([from, to]).filter(|at| holds([at[0] + x, at[1] + y])).count()
         }
-        LoadedLine::Circle { center, radius } => ring(center, radius - off).filter(|at| holds(*at)).count(),
+        &LoadedLine::Circle { center, radius } => ring(center, radius - off).filter(|at| holds(*at)).count(),
         LoadedLine::Plate(plate) => {
             let inside = |mut at: [f64; 3]| {
                 at[plate.normal()] += off;
                 bodies.iter().any(|body| body.region.contains_in_space(at))
             };
-            places(Site::Plate(plate), grid).into_iter().filter(|at| inside(*at)).count()
+            places(Site::Plate(*plate), grid).into_iter().filter(|at| inside(*at)).count()
+        }
+        LoadedLine::Triangles(all) => {
+            let inside = |triangle: &&Triangle| {
+                let (at, normal) = (middle(triangle), normal_of(triangle));
+                let beside = [0, 1, 2].map(|axis| at[axis] + off * normal[axis]);
+                bodies.iter().any(|body| body.region.contains_in_space(beside))
+            };
+            all.iter().filter(inside).count()
         }
     };
     side_of_bodies(grid, count)

@@ -35,7 +35,7 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
         for key in ["from", "to", "circle"].into_iter().filter(|key| traction.gives(key)) {
             traction.error(
                 key,
-                "is in a plane; a solid is loaded on a rectangle = { lower, upper }, or a disc",
+                "is in a plane; a solid is loaded on a rectangle = { lower, upper }, a disc, a sphere or a surface",
                 report,
             );
         }
@@ -62,6 +62,11 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
     for flat in root.records("traction").iter().chain(strips) {
         for key in ["rectangle", "disc"].into_iter().filter(|key| flat.gives(key)) {
             flat.error(key, "is in space: geometry = \"solid\" has it; here from and to", report);
+        }
+    }
+    for traction in root.records("traction") {
+        for key in ["sphere", "surface"].into_iter().filter(|key| traction.gives(key)) {
+            traction.error(key, "is in space: geometry = \"solid\" has it; here from and to, or circle", report);
         }
     }
     let stages = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));

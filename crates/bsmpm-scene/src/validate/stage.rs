@@ -1,7 +1,7 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
 use super::history::NAMELESS;
-use super::{free_field, place, reduction, rigid, site, strip};
+use super::{free_field, place, reduction, rigid, sheet, site, strip};
 use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
 use crate::nearest::hint;
 use crate::record::Record;
@@ -446,10 +446,11 @@ pub(super) fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Re
         }
     }
     for (number, (traction, record)) in case.tractions.iter().zip(root.records("traction")).enumerate() {
-        let places = match traction.line {
-            LoadedLine::Segment { from, to } => site::places(Site::Segment { from, to }, &case.grid),
-            LoadedLine::Circle { center, radius } => place::ring(center, radius).map(|[x, y]| [x, y, 0.0]).collect(),
-            LoadedLine::Plate(plate) => site::places(Site::Plate(plate), &case.grid),
+        let places = match &traction.line {
+            &LoadedLine::Segment { from, to } => site::places(Site::Segment { from, to }, &case.grid),
+            &LoadedLine::Circle { center, radius } => place::ring(center, radius).map(|[x, y]| [x, y, 0.0]).collect(),
+            LoadedLine::Plate(plate) => site::places(Site::Plate(*plate), &case.grid),
+            LoadedLine::Triangles(all) => all.iter().map(sheet::middle).collect(),
         };
         found.push((Acting::Load(number), record, key(record), places));
     }
@@ -461,5 +462,5 @@ pub(super) fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Re
 
 /// The key that gives a strip's or a load's place.
 fn key(record: &Record) -> &'static str {
-    ["rectangle", "disc", "circle"].into_iter().find(|key| record.gives(key)).unwrap_or("from")
+    ["rectangle", "disc", "circle", "surface", "sphere"].into_iter().find(|key| record.gives(key)).unwrap_or("from")
 }

@@ -26,28 +26,18 @@ pub struct SurfacePoint<const D: usize> {
     pub x: Vector<D>,
     /// m^(D-1)  share of the area
     pub area: f64,
-    /// m  what it stands for: a segment from one end to the other, or a rectangle along the axes by its lower and upper
-    /// corner; both the point itself where nothing is told
-    pub ends: [Vector<D>; 2],
+    /// m  corners of the piece that it stands for, in turn: of a segment each end twice, of a triangle one of them; all
+    /// the point itself where nothing is told
+    pub corners: [Vector<D>; CORNERS],
 }
 
-/// Corners of a piece of a surface: of a segment each end twice.
+/// Corners of a piece of a surface.
 pub const CORNERS: usize = 4;
 
 impl<const D: usize> SurfacePoint<D> {
     /// A point of a surface whose extent is of no concern.
     pub fn at(x: Vector<D>, area: f64) -> Self {
-        Self { x, area, ends: [x; 2] }
-    }
-
-    /// Corners of its piece in turn, m.
-    pub fn corners(&self) -> [Vector<D>; CORNERS] {
-        let [a, b] = self.ends;
-        let mut corners = [a, a, b, b];
-        if let Some(axis) = (0..D).find(|&axis| a[axis] != b[axis]).filter(|_| D == 3) {
-            (corners[1][axis], corners[3][axis]) = (b[axis], a[axis]);
-        }
-        corners
+        Self { x, area, corners: [x; CORNERS] }
     }
 }
 
@@ -67,8 +57,8 @@ pub fn along<K: Kinematics<D>, const D: usize>(
         let middle = part[0] + (k as f64 + 0.5) * share;
         let off = middle - 0.5 * (part[0] + part[1]);
         let x = from + (to - from) * (middle + off * (spread::<K, D>((from, to), part, count) - 1.0));
-        let ends = [0.0, 1.0].map(|end| from + (to - from) * (part[0] + (k as f64 + end) * share));
-        SurfacePoint { x, area: share * length * K::weight(&x), ends }
+        let [a, b] = [0.0, 1.0].map(|end| from + (to - from) * (part[0] + (k as f64 + end) * share));
+        SurfacePoint { x, area: share * length * K::weight(&x), corners: [a, a, b, b] }
     };
     cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
 }
@@ -93,15 +83,43 @@ pub fn over<K: Kinematics<D>, const D: usize>(
 ) -> Vec<SurfacePoint<D>> {
     let weighed = |(point, edges): (SurfacePoint<D>, Vector<D>)| SurfacePoint {
         area: point.area * K::weight(&point.x),
-        ends: ends(&point.x, &edges),
+        corners: corners(&point.x, &edges),
         ..point
     };
     pieces(grid, lower, upper, count).into_iter().map(weighed).collect()
 }
 
-/// Lower and upper corner of a rectangle, m.
-fn ends<const D: usize>(middle: &Vector<D>, edges: &Vector<D>) -> [Vector<D>; 2] {
-    [-0.5, 0.5].map(|end| middle + edges * end)
+/// Corners of a rectangle along the axes, m.
+fn corners<const D: usize>(middle: &Vector<D>, edges: &Vector<D>) -> [Vector<D>; CORNERS] {
+    let [a, b] = [-0.5, 0.5].map(|end| middle + edges * end);
+    let mut corners = [a, a, b, b];
+    if let Some(axis) = (0..D).find(|&axis| a[axis] != b[axis]).filter(|_| D == 3) {
+        (corners[1][axis], corners[3][axis]) = (b[axis], a[axis]);
+    }
+    corners
+}
+
+/// A triangle in pieces without a longer edge than this, m, at their middles; triangles that have an edge in common
+/// still have the edges of their pieces in common. Turns as the corners do.
+pub fn triangle<const D: usize>(corners: [Vector<D>; 3], longest: f64) -> Vec<SurfacePoint<D>> {
+    let mut pieces = Vec::new();
+    let mut whole = vec![corners];
+    while let Some([a, b, c]) = whole.pop() {
+        let edges = [(a, b, c), (b, c, a), (c, a, b)];
+        let length = |edge: &(Vector<D>, Vector<D>, Vector<D>)| (edge.1 - edge.0).norm();
+        let (a, b, c) =
+            edges.into_iter().fold(edges[0], |most, edge| if length(&edge) > length(&most) { edge } else { most });
+        if length(&(a, b, c)) > longest {
+            let middle = (a + b) * 0.5;
+            whole.extend([[a, middle, c], [middle, b, c]]);
+        } else {
+            let (along, across) = (b - a, c - a);
+            let square = along.norm_squared() * across.norm_squared() - along.dot(&across).powi(2);
+            let area = 0.5 * square.max(0.0).sqrt();
+            pieces.push(SurfacePoint { x: (a + b + c) / 3.0, area, corners: [a, b, c, c] });
+        }
+    }
+    pieces
 }
 
 /// The pieces of [`over`], and their edges, m.
@@ -164,8 +182,8 @@ pub fn within<K: Kinematics<D>, const D: usize>(
         let (area, moment) = (0.5 * (one.0 + other.0), 0.5 * (one.1 + other.1));
         let mut x = piece.x;
         (x[a], x[b]) = (moment[a] / area, moment[b] / area);
-        let ends = ends(&piece.x, &edges);
-        (area > 0.0).then(|| SurfacePoint { x, area: area * K::weight(&x), ends })
+        let corners = corners(&piece.x, &edges);
+        (area > 0.0).then(|| SurfacePoint { x, area: area * K::weight(&x), corners })
     };
     pieces(grid, lower, upper, count).into_iter().filter_map(clipped).collect()
 }

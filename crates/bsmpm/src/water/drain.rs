@@ -209,13 +209,13 @@ impl<const D: usize> SurfacePlace<D> {
     }
 }
 
-/// The most cells that are now between points of a surface whose ends met at the start, or which were within a cell, in
-/// the order of the surface: what the ground has laid bare between them is closed.
+/// The most cells that are now between points of a surface whose corners met at the start, or which were within a cell,
+/// in the order of the surface: what the ground has laid bare between them is closed.
 fn cells_apart<const D: usize>(grid: &Grid<D>, starts: &[SurfacePoint<D>], places: &[SurfacePlace<D>]) -> f64 {
     let edge = grid.smallest_edge();
     let meet = |a: &Vector<D>, b: &Vector<D>| (a - b).norm() <= ON * edge;
     let meets = |pair: &[SurfacePoint<D>]| {
-        let ends = pair[0].ends.iter().any(|a| pair[1].ends.iter().any(|b| meet(a, b)));
+        let ends = pair[0].corners.iter().any(|a| pair[1].corners.iter().any(|b| meet(a, b)));
         ends || (pair[0].x - pair[1].x).norm() < edge
     };
     let pairs = starts.windows(2).zip(places.windows(2)).filter(|(starts, _)| meets(starts));

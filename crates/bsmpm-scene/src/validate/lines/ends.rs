@@ -63,7 +63,7 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
     });
     let tractions = case.tractions.iter().enumerate().filter_map(|(number, traction)| match traction.line {
         LoadedLine::Plate(plate) => Some((("traction", number), plate, None)),
-        LoadedLine::Segment { .. } | LoadedLine::Circle { .. } => None,
+        LoadedLine::Segment { .. } | LoadedLine::Circle { .. } | LoadedLine::Triangles(_) => None,
     });
     for (table, plate, path) in strips.chain(tractions) {
         let name = if table.0 == "footing" { "footing".into() } else { format!("{}.{}", table.0, table.1) };

@@ -11,7 +11,7 @@
 use super::Load;
 use crate::boundary::anchor::Anchored;
 use crate::boundary::strip::reduce;
-use crate::boundary::surface::{Anchors, Attachment, CORNERS, SurfacePoint};
+use crate::boundary::surface::{Anchors, Attachment, CORNERS};
 use crate::grid::{Contributions, Grid};
 use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
@@ -37,7 +37,7 @@ impl<const D: usize> LoadCorners<D> {
     fn of(loads: &[Load<D>]) -> Self {
         let mut corners = Self::default();
         for load in loads.iter().filter(|load| load.follows) {
-            let pieces = || load.points.iter().map(SurfacePoint::corners);
+            let pieces = || load.points.iter().map(|point| point.corners);
             let near = SAME * pieces().map(|piece| (piece[2] - piece[0]).amax()).fold(f64::MIN_POSITIVE, f64::max);
             let mut known = BTreeMap::new();
             for piece in pieces() {
