@@ -17,8 +17,8 @@ use crate::record::{RunRecord, short};
 
 const ABOVE: f64 = 130.0;
 const RIGHT: f64 = 60.0;
-/// How far a part's colour reaches, in its size: it closes cracks of a stretched surface, and no gap of two parts.
-const REACH: f64 = 1.4;
+/// How far a part's colour reaches, in its size: to its corners.
+const REACH: f64 = 0.75;
 /// Range of colours over the size of a cell at least.
 const FLAT: f64 = 1e-3;
 /// The sun, towards it: from the upper left, steeply.
@@ -26,26 +26,39 @@ const LIGHT: [f64; 3] = [-0.5, 0.5, 0.707];
 /// Share of the light that comes from everywhere.
 const AMBIENT: f64 = 0.7;
 
-/// The tops of the material of the highest points of a frame, one in each part of a cell.
+/// Ways to opposite neighbours.
+const ACROSS: [[i64; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
+
+/// Where the material of a frame ends above, in parts of the plane.
 struct Heights {
     /// m  edges of the parts
     part: [f64; 2],
-    /// by their numbers along x and y
-    points: HashMap<[i64; 2], [f64; 3]>,
+    /// m  by their numbers along x and y
+    top: HashMap<[i64; 2], f64>,
 }
 
 impl Heights {
     /// Of a body that goes on so far `above` its highest points, m.
     fn of(frame: &Frame, part: [f64; 2], above: f64) -> Self {
-        let mut points: HashMap<[i64; 2], [f64; 3]> = HashMap::new();
-        for &[x, y, z] in &frame.position {
-            let top = [x, y, z + above];
-            let highest = points.entry([0, 1].map(|axis| (top[axis] / part[axis]).floor() as i64)).or_insert(top);
-            if top[2] > highest[2] {
-                *highest = top;
-            }
+        let mut highest: HashMap<[i64; 2], f64> = HashMap::new();
+        for at in &frame.position {
+            let top = highest.entry([0, 1].map(|axis| (at[axis] / part[axis]).floor() as i64)).or_insert(f64::MIN);
+            *top = top.max(at[2] + above);
         }
-        Self { part, points }
+        // Between points that were pulled apart a lower one is no pit: a surface is nowhere below what joins two sides.
+        let joined = |at: [i64; 2], by: &[i64; 2]| {
+            let beside = |sign: i64| highest.get(&[0, 1].map(|axis| at[axis] + sign * by[axis]));
+            Some(beside(-1)?.min(*beside(1)?))
+        };
+        let closed =
+            |(at, top): (&[i64; 2], &f64)| (*at, ACROSS.iter().filter_map(|by| joined(*at, by)).fold(*top, f64::max));
+        Self { part, top: highest.iter().map(closed).collect() }
+    }
+
+    /// m  the middle of a part
+    fn middle(&self, at: [i64; 2]) -> [f64; 3] {
+        let [x, y] = [0, 1].map(|axis| (at[axis] as f64 + 0.5) * self.part[axis]);
+        [x, y, self.top[&at]]
     }
 
     /// Slope along an axis, by the neighbours that there are.
@@ -53,9 +66,9 @@ impl Heights {
         let beside = |by: i64| {
             let mut place = at;
             place[axis] += by;
-            self.points.get(&place).map(|point| point[2])
+            self.top.get(&place).copied()
         };
-        let (here, length) = (self.points[&at][2], self.part[axis]);
+        let (here, length) = (self.top[&at], self.part[axis]);
         match (beside(-1), beside(1)) {
             (Some(before), Some(after)) => (after - before) / (2.0 * length),
             (Some(before), None) => (here - before) / length,
@@ -77,9 +90,9 @@ impl Heights {
 pub(super) fn draw(record: &RunRecord, frames: &[Frame]) -> Result<Vec<String>, Error> {
     let cells = record.manifest.grid.as_ref().filter(|_| record.is_solid()).map(|grid| &grid.cell);
     let Some(&[x, y, ..]) = cells.map(Vec::as_slice) else { return Ok(Vec::new()) };
-    let of = |frame: &Frame| Heights::of(frame, [0.5 * x, 0.5 * y], section::above(record, frame));
+    let of = |frame: &Frame| Heights::of(frame, [x, y], section::above(record, frame));
     let heights: Vec<Heights> = frames.iter().map(of).collect();
-    let ends = range(heights.iter().flat_map(|of| of.points.values()).map(|point| point[2]));
+    let ends = range(heights.iter().flat_map(|of| of.top.values()).copied());
     let Some((low, high)) = ends else { return Ok(Vec::new()) };
     // A level surface is no relief of rounding.
     let room = (FLAT * x.min(y) - (high - low)).max(0.0) / 2.0;
@@ -102,14 +115,14 @@ fn picture(record: &RunRecord, frame: &Frame, heights: &Heights, bar: Bar) -> Ca
     let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 });
     let below = record.moment(frame.time) + ", from above";
     title(&mut canvas, layout.width, &record.manifest.case.title, &below);
-    let mut parts: Vec<(&[i64; 2], &[f64; 3])> = heights.points.iter().collect();
-    parts.sort_unstable_by_key(|(at, _)| **at);
-    let shade = |(at, point): &(&[i64; 2], &[f64; 3])| -> Rgb {
-        let lit = heights.lit(**at);
-        colour::map(bar.share(point[2])).map(|part| (f64::from(part) * lit).round() as u8)
+    let mut parts: Vec<[i64; 2]> = heights.top.keys().copied().collect();
+    parts.sort_unstable();
+    let shade = |at: &[i64; 2]| -> Rgb {
+        let lit = heights.lit(*at);
+        colour::map(bar.share(heights.top[at])).map(|part| (f64::from(part) * lit).round() as u8)
     };
     let shades: Vec<Rgb> = parts.iter().map(shade).collect();
-    let places: Vec<[f64; 3]> = parts.iter().map(|(_, point)| **point).collect();
+    let places: Vec<[f64; 3]> = parts.iter().map(|at| heights.middle(*at)).collect();
     let sizes = vec![heights.part[0].max(heights.part[1]); places.len()];
     let inside = splat::SplatWindow { ranges: window, walls: Default::default(), reach: REACH };
     splat::draw(&mut canvas, &axes, &inside, (&places, &sizes), &shades);
@@ -132,10 +145,18 @@ mod tests {
         let position = [row(0.5, 1.0), row(1.5, 3.0), row(2.5, 1.0)].concat();
         let frame = Frame { step: 0, time: 0.0, position, fields: Vec::new() };
         let heights = Heights::of(&frame, [1.0, 1.0], 0.25);
-        assert_eq!(heights.points.len(), 3);
-        assert_eq!(heights.points[&[1, 0]], [1.5, 0.5, 3.25]);
+        assert_eq!(heights.top.len(), 3);
+        assert_eq!(heights.middle([1, 0]), [1.5, 0.5, 3.25]);
         assert_eq!((heights.slope([0, 0], 0), heights.slope([1, 0], 0), heights.slope([1, 0], 1)), (2.0, 0.0, 0.0));
         assert!(heights.lit([0, 0]) > heights.lit([2, 0]));
         assert_eq!(heights.lit([1, 0]), 1.0);
+    }
+
+    #[test]
+    fn a_lower_point_between_others_is_no_pit_and_one_beside_them_is_lower() {
+        let position = vec![[0.5, 0.5, 2.0], [1.5, 0.5, 1.0], [2.5, 0.5, 3.0], [3.5, 0.5, 1.0]];
+        let frame = Frame { step: 0, time: 0.0, position, fields: Vec::new() };
+        let heights = Heights::of(&frame, [1.0, 1.0], 0.0);
+        assert_eq!([0, 1, 2, 3].map(|x| heights.top[&[x, 0]]), [2.0, 2.0, 3.0, 1.0]);
     }
 }
