@@ -155,9 +155,9 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
             boundary.error(side.word(), "the free field begins with the run: only from the start on", report);
         }
         let is_wet = root.gives("water") || root.named("material").iter().any(|(_, of)| of.gives("drainage"));
-        let is_plane = root.word("geometry") == Some(Geometry::PlaneStrain);
-        if support == Support::Absorbing && (side != Side::Bottom || is_wet || !is_plane) {
-            let message = "a stage may let the bottom of dry ground in plane strain absorb; sides: from the start on, with \
+        let is_solid = root.word("geometry") == Some(Geometry::Solid);
+        if support == Support::Absorbing && (side != Side::Bottom || is_wet || is_solid) {
+            let message = "a stage may let the bottom of dry ground absorb, but of a solid; sides: from the start on, with \
                            [initial]";
             boundary.error(side.word(), message, report);
         }

@@ -7,7 +7,7 @@ pub const AXISYMMETRIC: &[Row] = &[
     row("lower = [0.0, 0.0]\nupper = [2.0", "lower = [-1.0, 0.0]\nupper = [2.0", "grid.lower", "begins at the axis"),
     row("left   = \"roller\"", "left   = \"fixed\"", "boundary.left", "is the axis"),
     row("left   = \"roller\"", "left   = \"free\"", "boundary.left", "is the axis"),
-    row("right  = \"free\"", "right  = \"absorbing\"", "boundary.right", "in plane strain only"),
+    row("right  = \"free\"", "right  = \"free-field\"", "boundary.right", "has no rotational symmetry"),
     row(
         "[boundary]",
         "[[stage]]\nat = 0.05\nboundary = { left = \"free\" }\n\n[boundary]",

@@ -5,7 +5,7 @@ use crate::support::solver::Skyline;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::energy::{Books, Stored};
 use bsmpm::initial;
-use bsmpm::kinematics::PlaneStrain;
+use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain};
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Regime, Shaking};
 use bsmpm::tensor::{Symmetric, Vector};
@@ -24,7 +24,7 @@ fn speed(kind: usize) -> f64 {
 
 /// A bar of 20 m, of `n` cells along `along`, between faces that absorb; a pulse of velocity of 8 m in its middle that
 /// is one of compression or of shear and goes both ways.
-fn pulsed(n: usize, along: usize, kind: usize) -> Scene<PlaneStrain, 2> {
+fn pulsed<K: Kinematics<2>>(n: usize, along: usize, kind: usize) -> Scene<K, 2> {
     let h = 20.0 / n as f64;
     let (mut axes, mut cells) = ([axis(h, 1, 2), axis(h, 1, 2)], [0..1, 0..1]);
     (axes[along], cells[along]) = (axis(h, n, 2), 0..n);
@@ -47,7 +47,7 @@ fn pulsed(n: usize, along: usize, kind: usize) -> Scene<PlaneStrain, 2> {
 }
 
 /// What is left of the energy once both halves of the pulse have met the faces, and the closure of the books over it.
-fn left(mut scene: Scene<PlaneStrain, 2>, (n, kind): (usize, usize)) -> (f64, f64) {
+fn left<K: Kinematics<2>>(mut scene: Scene<K, 2>, (n, kind): (usize, usize)) -> (f64, f64) {
     scene.model.balances_energy = true;
     let (model, halo) = (scene.model.clone(), scene.halo());
     let start = Stored::of(&model, (&scene.points, 0.0), &halo);
@@ -65,15 +65,17 @@ fn left(mut scene: Scene<PlaneStrain, 2>, (n, kind): (usize, usize)) -> (f64, f6
 #[test]
 fn plane_waves_of_either_kind_leave_through_any_face() {
     for (along, kind) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        let [(coarse, _), (fine, closure)] = [40, 80].map(|n| left(pulsed(n, along, kind), (n, kind)));
+        let [(coarse, _), (fine, closure)] = [40, 80].map(|n| left(pulsed::<PlaneStrain>(n, along, kind), (n, kind)));
         // 9.7e-4 and 1.7e-5; of 20 cells 4.3e-2.
         assert!(coarse < 1.1e-3 && fine < 2e-5, "axis {along}, kind {kind}: {coarse:e}, {fine:e}");
         assert!(closure.abs() < 1e-9, "{closure:e}");
     }
-    let mut newton = pulsed(40, 0, 0);
+    let mut newton = pulsed::<PlaneStrain>(40, 0, 0);
     newton.model.nonlinear = Nonlinear::Newton;
-    let (coarse, closure) = left(newton, (40, 0));
-    assert!(coarse < 1.1e-3 && closure.abs() < 1e-9, "{coarse:e}, {closure:e}");
+    // Along the axis of a round bar, whose faces weigh by the radius.
+    for (coarse, closure) in [left(newton, (40, 0)), left(pulsed::<Axisymmetric>(40, 1, 0), (40, 0))] {
+        assert!(coarse < 1.1e-3 && closure.abs() < 1e-9, "{coarse:e}, {closure:e}");
+    }
 }
 
 /// A column of 10 m of ground at rest on a base that absorbs, between rollers.
@@ -148,17 +150,20 @@ fn a_base_that_absorbs_lets_the_motion_of_the_outcrop_in() {
 }
 
 /// Velocities at `places`, m from the middle, step after step, of a square of `cells` of 1 m in whose middle a force
-/// acts for .08 s; its faces absorb or are fixed.
-fn shot(cells: usize, absorbs: bool, places: &[[f64; 2]]) -> Vec<Vec<Vector<2>>> {
+/// acts for .08 s, or of a cylinder as high and wide; its faces absorb or are fixed.
+fn shot<K: Kinematics<2>>(cells: usize, absorbs: bool, places: &[[f64; 2]]) -> Vec<Vec<Vector<2>>> {
     let face = if absorbs { Support::absorbing } else { Support::fixed };
-    let middle = Vector::repeat(0.5 * cells as f64);
+    let is_round = K::weight(&Vector::zeros()) == 0.0;
+    let across = if is_round { cells / 2 } else { cells };
+    let middle = Vector::from([across as f64 - 0.5 * cells as f64, 0.5 * cells as f64]);
     let mut pulse = Load::dead(vec![SurfacePoint::at(middle, 1.0)], [0.0, -1e3].into(), 0.0);
     pulse.amplitude = vec![(0.02, 0.3), (0.04, 1.0), (0.06, 0.3), (0.08, 0.0)];
     let mut scene =
-        Scene::<PlaneStrain, 2>::new([0, 1].map(|_| axis(1.0, cells, 2)), hencky(YOUNG, POISSON), Regime::Dynamic)
-            .body([0..cells, 0..cells], 2, RHO, |_| Vector::zeros())
-            .load(pulse);
-    for (axis, upper) in [(0, false), (0, true), (1, false), (1, true)] {
+        Scene::<K, 2>::new([axis(1.0, across, 2), axis(1.0, cells, 2)], hencky(YOUNG, POISSON), Regime::Dynamic)
+            .body([0..across, 0..cells], 2, RHO, |_| Vector::zeros())
+            .load(pulse)
+            .support(if is_round { Support::roller(0, false) } else { face(0, false) });
+    for (axis, upper) in [(0, true), (1, false), (1, true)] {
         scene = scene.support(face(axis, upper));
     }
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-6);
@@ -177,16 +182,24 @@ fn shot(cells: usize, absorbs: bool, places: &[[f64; 2]]) -> Vec<Vec<Vector<2>>>
 
 /// Waves that come aslant leave for the better part only: what is wrong over the largest velocity there, until the
 /// faces of a square twice as wide are felt.
-#[test]
-fn of_a_source_at_a_point_most_leaves() {
+fn most_leaves<K: Kinematics<2>>(bounds: [f64; 4]) {
     let places = [[2.25, 2.25], [5.25, 0.25], [9.25, 0.25], [8.25, 8.25]];
-    let [right, absorbed, fixed] = [(40, false), (20, true), (20, false)].map(|(n, absorbs)| shot(n, absorbs, &places));
-    // 5.8, 1.7 %; right at a side and in a corner 23 %. Faces that are fixed: 77 % and more.
-    for ((k, at), bound) in places.iter().enumerate().zip([0.07, 0.025, 0.26, 0.26]) {
+    let [right, absorbed, fixed] =
+        [(40, false), (20, true), (20, false)].map(|(n, absorbs)| shot::<K>(n, absorbs, &places));
+    for ((k, at), bound) in places.iter().enumerate().zip(bounds) {
         let largest = right.iter().map(|v| v[k].norm()).fold(0.0, f64::max);
         let off = |found: &[Vec<Vector<2>>]| {
             found.iter().zip(&right).map(|(found, right)| (found[k] - right[k]).norm()).fold(0.0, f64::max) / largest
         };
-        assert!(off(&absorbed) < bound && off(&fixed) > 0.7, "{at:?}: {}, fixed {}", off(&absorbed), off(&fixed));
+        let [absorbed, fixed] = [off(&absorbed), off(&fixed)];
+        assert!(absorbed < bound && fixed > 3.0 * absorbed, "{at:?}: {absorbed}, fixed {fixed}");
     }
+}
+
+#[test]
+fn of_a_source_at_a_point_most_leaves() {
+    // 5.8, 1.7 %; right at a side and in a corner 23 %. Faces that are fixed: 77 % and more.
+    most_leaves::<PlaneStrain>([0.07, 0.025, 0.26, 0.26]);
+    // 6.5, 4.5, 22, 17 %; fixed 32, 35, 105, 79 %.
+    most_leaves::<Axisymmetric>([0.07, 0.05, 0.25, 0.19]);
 }
