@@ -25,7 +25,7 @@ pub fn target(data: &[u8]) {
 fn accepted(case: &Case) {
     let again = Case::from_text("case.toml", &case.text, &[]);
     assert_eq!(again.as_ref(), Ok(case), "the case as it is run is another one");
-    let estimate = case.estimate();
+    let estimate = case.estimate(1);
     assert_eq!(estimate.points, case.points());
     assert!(estimate.points > 0 && estimate.cells > 0 && estimate.nodes > estimate.cells);
     let columns = case.grid.axes[0].cells();

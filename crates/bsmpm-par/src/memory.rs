@@ -67,17 +67,15 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
     let here = world.split_shared(world.rank()).size().unsigned_abs() as usize;
     let mut code = exit::DONE;
     if world.rank() == 0 {
-        let (estimate, limits) = (case.estimate(), limits(arguments.max_memory));
+        let (estimate, limits) = (case.estimate(ranks), limits(arguments.max_memory));
         let shortage = |needed: u64| {
             let mut limits = limits.iter().filter_map(|&(by, bytes)| Some((by, bytes?)));
             limits.find_map(|limit| short(needed, (ranks, here), limit))
         };
-        if let (None, Some(shortage)) =
-            (shortage(estimate.bytes_on(ranks)), shortage(estimate.bytes_with_newton_on(ranks)))
-        {
+        if let (None, Some(shortage)) = (shortage(estimate.bytes), shortage(estimate.bytes_with_newton)) {
             say(&format!("warning: should a step need Newton's method, {shortage}"));
         }
-        match shortage(estimate.bytes_on(ranks)) {
+        match shortage(estimate.bytes) {
             Some(shortage) if arguments.check && shortage.by != Limit::Asked => say(&format!("warning: {shortage}")),
             Some(shortage) => {
                 say(&format!("bsmpm-par: {shortage}; nothing was run or written"));

@@ -167,9 +167,9 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::M
     rows.into_iter().map(owned).collect()
 }
 
-/// Warnings of the case, and of what the program makes of it.
-pub fn warnings(case: &Case) -> Vec<String> {
-    let mut warnings = case.warnings.clone();
+/// Warnings of the case on so many ranks, and of what the program makes of it.
+pub fn warnings(case: &Case, ranks: usize) -> Vec<String> {
+    let mut warnings = case.warnings_on(ranks);
     if let Some((length, size)) =
         smoothing(case, bsmpm_scene::model::nominal_steps(case)).filter(|(length, size)| length > &(SMALL * size))
     {

@@ -51,11 +51,11 @@ fn broadcast(world: &SimpleCommunicator, bytes: impl FnOnce() -> Result<Vec<u8>,
 
 /// What `--check` prints: sizes, choices and warnings.
 pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
-    let estimate = case.estimate();
+    let estimate = case.estimate(ranks);
     let each = |bytes: u64| bytes / ranks as u64 / 1_048_576 + 1;
-    let newton = match estimate.newton {
-        0 => String::new(),
-        _ => format!("; {} once a step needs Newton's method", each(estimate.bytes_with_newton_on(ranks))),
+    let newton = match estimate.bytes_with_newton {
+        same if same == estimate.bytes => String::new(),
+        more => format!("; {} once a step needs Newton's method", each(more)),
     };
     let pressures = match estimate.pressures {
         0 => String::new(),
@@ -67,7 +67,7 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         format!("cells            {}", estimate.cells),
         format!("nodes            {}", estimate.nodes),
         format!("unknowns         at most {}{pressures}", estimate.unknowns),
-        format!("memory           about {} MiB on each of {ranks} rank(s){newton}", each(estimate.bytes_on(ranks))),
+        format!("memory           about {} MiB on each of {ranks} rank(s){newton}", each(estimate.bytes)),
         format!("ranks            at most {}, of use about {}", case.most_ranks(), estimate.useful_ranks),
         format!("nominal steps    {}", bsmpm_scene::model::nominal_steps(case)),
     ];
@@ -76,6 +76,6 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
     lines.extend(
         told.chain(chosen.iter().map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason))),
     );
-    lines.extend(setup::warnings(case).iter().map(|warning| format!("warning: {warning}")));
+    lines.extend(setup::warnings(case, ranks).iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n")
 }

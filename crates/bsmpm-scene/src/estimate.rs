@@ -2,7 +2,7 @@
 //!
 //! The bytes are counted from what the program holds and rounded to what runs took; `tests/shipped.rs` compares.
 
-use crate::case::{Body, Case, Nonlinear, Solver};
+use crate::case::{Body, Case, Linear, Nonlinear};
 use crate::grid::GridSpec;
 use crate::words::{Factor, Geometry, Pc};
 use bsmpm::grid::room;
@@ -48,8 +48,12 @@ const REPEATED: u128 = 60;
 const LEVEL: u128 = 15 * 8;
 /// The same of a factorisation by dissection, which holds nothing else of the system.
 const FRONT: u128 = 12 * 8;
-/// The same in space per unknown and cube root of their number: separators are planes. Measured on 30,000 and 77,000.
-const DENSE: u128 = 480;
+/// The same in space per unknown, cube root of their number and square of the reach: separators are planes so many
+/// layers thick. Measured on 10,000 and 63,000 that reach two and three layers.
+const DENSE: u128 = 85;
+/// Bytes of a second rank per square of the unknowns of the layers at the cut: beside its front they are in the rims of
+/// fronts of many levels below. Measured on the same.
+const CUT: u128 = 48;
 /// Bytes of a number.
 const NUMBER: u128 = 8;
 /// Bytes of an unknown in the Krylov space of Newton's directions: two doubles for each of a hundred products.
@@ -57,7 +61,7 @@ const KRYLOV: u128 = 100 * 16;
 /// The same where water flows, of as many products as there may be.
 const KRYLOV_OF_WATER: u128 = bsmpm::solve::fgmres::MOST as u128 * 16;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
-const PROCESS: u64 = 47_000_000;
+const PROCESS: u128 = 47_000_000;
 
 /// Poisson's ratio up to which the stiffness that secants correct is without F-bar's coupling in space.
 const LOCAL: f64 = 0.45;
@@ -87,34 +91,12 @@ pub struct Estimate {
     pub points: u64,
     /// Ranks that have something to do: at least a thousand unknowns each, and [`Case::most_ranks`] at most.
     pub useful_ranks: u64,
-    /// Memory of the case, bytes, however many ranks share it: points, nodes, stiffness and its factor, where the
-    /// bodies are at the start. Not what each rank adds, see [`Estimate::bytes_on`].
+    /// Memory of all ranks together, bytes, their libraries and what each repeats included, where the bodies are at the
+    /// start and as long as `auto` needs no Newton's method. Within .8 to 1.5 of the peaks that were measured on one to
+    /// three ranks; bodies that spread take more.
     pub bytes: u64,
-    /// Bytes that every further rank adds: the system again, where each factorises the whole, and ghost nodes in space.
-    pub repeated: u64,
-    /// Bytes that more than one rank add all together: coordinates of entries, as rows are summed by several.
-    pub coordinates: u64,
-    /// Bytes that Newton's system adds once a step needs it, where `auto` makes it only then.
-    pub newton: u64,
-    /// Bytes of that system that every further rank adds.
-    pub newton_repeated: u64,
-}
-
-impl Estimate {
-    /// Memory of all of `ranks` ranks together, bytes, their libraries included, as long as `auto` needs no Newton's
-    /// method. Within .8 to 1.5 of the peaks that were measured on one to three ranks; bodies that spread take more.
-    pub fn bytes_on(&self, ranks: usize) -> u64 {
-        let ranks = ranks as u64;
-        let further = self.repeated.saturating_mul(ranks.saturating_sub(1));
-        let coordinates = if ranks > 1 { self.coordinates } else { 0 };
-        self.bytes.saturating_add(PROCESS.saturating_mul(ranks)).saturating_add(further).saturating_add(coordinates)
-    }
-
     /// The same once Newton's method is needed.
-    pub fn bytes_with_newton_on(&self, ranks: usize) -> u64 {
-        let further = self.newton_repeated.saturating_mul((ranks as u64).saturating_sub(1));
-        self.bytes_on(ranks).saturating_add(self.newton).saturating_add(further)
-    }
+    pub bytes_with_newton: u64,
 }
 
 /// Linear systems of a step: the stiffness that the secants correct, and the general one of Newton's directions.
@@ -137,25 +119,25 @@ impl Systems {
     /// Where water `flows` Newton's directions are preconditioned by those of the secants, and have one unknown a node
     /// more.
     fn of(
-        (solver, nonlinear, dims): (&Solver, Nonlinear, usize),
+        (linear, reproducible, nonlinear, dims): (&Linear, bool, Nonlinear, usize),
         (unknowns, entries): (u128, u128),
         reach: u128,
         flows: bool,
     ) -> Self {
-        let direct = solver.linear.factor.is_some();
+        let direct = linear.factor.is_some();
         let levels = u128::from(unknowns.max(2).ilog2());
         let flat = |level: u128| unknowns * levels * level;
         let [factor, fronts] = match dims {
             2 => [flat(LEVEL) * reach / 2, flat(FRONT) * reach.pow(2) / 4],
-            _ => [DENSE * (unknowns as f64).powf(4.0 / 3.0) as u128; 2],
+            _ => [DENSE * reach.pow(2) * (unknowns as f64).powf(4.0 / 3.0) as u128; 2],
         };
         let factor = if direct { factor } else { 0 };
-        let again = u128::from(direct && solver.reproducible);
-        let elastic = if solver.linear.factor == Some(Factor::Dissection) {
+        let again = u128::from(direct && reproducible);
+        let elastic = if linear.factor == Some(Factor::Dissection) {
             [fronts, 0, 0]
-        } else if solver.linear.pc == Pc::SplineMultigrid {
+        } else if linear.pc == Pc::SplineMultigrid {
             [entries * COARSER + unknowns * PATCHES, 0, 0]
-        } else if solver.linear.applications > 0 {
+        } else if linear.applications > 0 {
             [entries * ROUGH_ENTRY, 0, 0]
         } else {
             [entries * ENTRY + factor, again * (entries * REPEATED + factor), entries * BUILT]
@@ -163,7 +145,7 @@ impl Systems {
         // Of water one number of every node more.
         let wet = (unknowns + unknowns / dims as u128) * KRYLOV_OF_WATER;
         // In space, and around a preconditioner that is applied in place of solutions, there is no general matrix.
-        let around = solver.linear.applications > 0 || dims > 2;
+        let around = linear.applications > 0 || dims > 2;
         let krylov = unknowns * if around { KRYLOV_OF_WATER } else { KRYLOV };
         let repeated = again * (entries * REPEATED + 2 * factor);
         let general = match flows {
@@ -246,17 +228,16 @@ impl Case {
     }
 
     /// Bytes that another rank adds in space, where layers of nodes are large: those on both sides of the cut that rows
-    /// reach, with so many `bytes` a node, and of a dissection half the square of what separates the two, which both
-    /// have.
-    fn ghosts(&self, occupied: u128, reach: u128, bytes: u128) -> u128 {
+    /// reach, with so many `bytes` a node, and of a dissection what it has of the cut.
+    fn ghosts(&self, (occupied, reach): (u128, u128), bytes: u128, dissects: bool) -> u128 {
         let longest = self.room([1; 2]).iter().map(|spans| (spans.len() + self.grid.order) as u128).max();
         let nodes = reach * (occupied / longest.unwrap_or(1));
-        let separated = if self.solver.linear.factor == Some(Factor::Dissection) { 3 * nodes } else { 0 };
-        2 * nodes * bytes + separated.pow(2) * 8 / 2
+        let separated = if dissects { 3 * nodes } else { 0 };
+        2 * nodes * bytes + separated.pow(2) * CUT
     }
 
-    /// Sizes of the case.
-    pub fn estimate(&self) -> Estimate {
+    /// Sizes of the case on so many ranks.
+    pub fn estimate(&self, ranks: usize) -> Estimate {
         let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
         let places = places(self);
         let dims = self.grid.dims() as u128;
@@ -267,7 +248,8 @@ impl Case {
         let occupied = occupied_nodes(self, order).min(nodes);
         let entries = dims * occupied * dims * places;
         let reach = order + self.beyond() as u128;
-        let by = (&self.solver, self.solver.nonlinear, self.grid.dims());
+        let (linear, ranks) = (self.solver.linear_on(ranks), ranks as u128);
+        let by = (&linear, self.solver.reproducible, self.solver.nonlinear, self.grid.dims());
         let systems = Systems::of(by, (dims * occupied, entries), reach, self.flow.is_some());
         let (point, vectors) = if dims == 3 { (POINT_IN_SPACE, VECTORS * 3 / 2) } else { (POINT, VECTORS) };
         let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
@@ -276,31 +258,37 @@ impl Case {
         let passing = systems.built.max(points * SAVED);
         let water = self.pressures().map(|(pressures, entries)| {
             // Solved by itself, as a part of the directions.
-            let by = (&self.solver, Nonlinear::Broyden, self.grid.dims());
+            let by = (&linear, self.solver.reproducible, Nonlinear::Broyden, self.grid.dims());
             let system = Systems::of(by, (pressures, entries), order - 1, true);
             // A third number of every node's vectors, secants included.
             let held = points * WET + entries * 8 + room_nodes(self) * VECTORS / 2;
             (pressures, held + system.held, system.repeated)
         });
         let (pressures, wet, wet_repeated) = water.unwrap_or_default();
+        let dissects = linear.factor == Some(Factor::Dissection);
+        let ghosts = match dims {
+            3 => self.ghosts((occupied, reach), stencil + every + vectors, dissects),
+            _ => 0,
+        };
+        // Coordinates of entries, as rows are summed by several.
+        let sums = ranks > 1 && linear.applications > 0 && linear.pc != Pc::SplineMultigrid;
         let bytes = points * (point + lowered + smoothing)
             + occupied * stencil
             + room_nodes(self) * (every + vectors)
             + systems.held
             + passing
-            + wet;
+            + wet
+            + ranks * PROCESS
+            + (ranks - 1) * (systems.repeated + wet_repeated + ghosts)
+            + if sums { entries * BUILT } else { 0 };
         let derivative = points * self.linearised();
         let [now, perhaps] = match self.solver.nonlinear {
             Nonlinear::Newton => [derivative, 0],
             Nonlinear::Auto => [0, derivative],
             _ => [0; 2],
         };
-        let bytes = bytes + now;
-        let ghosts = if dims == 3 { self.ghosts(occupied, reach, stencil + every + vectors) } else { 0 };
-        let repeated = systems.repeated + wet_repeated + ghosts;
+        let newton = perhaps + systems.perhaps[0] + (ranks - 1) * systems.perhaps[1];
         let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
-        let linear = self.solver.linear;
-        let coordinates = linear.applications > 0 && linear.pc != Pc::SplineMultigrid;
         Estimate {
             cells: bounded(cells(&self.grid)),
             nodes: bounded(nodes),
@@ -310,11 +298,8 @@ impl Case {
             entries: bounded(entries),
             points: self.points(),
             useful_ranks: bounded((dims * occupied / FEWEST).clamp(1, self.most_ranks() as u128)),
-            bytes: bounded(bytes),
-            repeated: bounded(repeated),
-            coordinates: bounded(if coordinates { entries * BUILT } else { 0 }),
-            newton: bounded(systems.perhaps[0] + perhaps),
-            newton_repeated: bounded(systems.perhaps[1]),
+            bytes: bounded(bytes + now),
+            bytes_with_newton: bounded(bytes + now + newton),
         }
     }
 }

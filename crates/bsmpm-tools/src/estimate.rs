@@ -89,7 +89,7 @@ pub fn run(arguments: &EstimateArguments, mut told: impl FnMut(&str)) -> Result<
         return Err(Error::Usage { reason: case.too_many(ranks) });
     }
     let speed = kernel::speed();
-    let guess = stored::guess(&case, speed);
+    let guess = stored::guess(&case, ranks, speed);
     let found = if arguments.no_probe {
         guess
     } else {

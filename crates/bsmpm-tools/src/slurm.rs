@@ -67,7 +67,7 @@ pub struct SlurmArguments {
 pub fn run(arguments: &SlurmArguments, mut told: impl FnMut(&str)) -> Result<Option<Vec<u8>>, Error> {
     let path = &arguments.case;
     let case = case::parsed(path, &case::load(path)?, &arguments.set)?;
-    case.warnings.iter().for_each(|warning| told(warning));
+    case.warnings_on(arguments.ranks as usize).iter().for_each(|warning| told(warning));
     if let Some(doubt) = doubt(&case, arguments.ranks.into()) {
         told(&doubt);
     }
@@ -80,7 +80,8 @@ pub fn run(arguments: &SlurmArguments, mut told: impl FnMut(&str)) -> Result<Opt
 
 /// What is to be said of more ranks than the case has use for.
 fn doubt(case: &Case, ranks: u64) -> Option<String> {
-    let (count, useful) = (ranks as usize, case.estimate().useful_ranks);
+    let count = ranks as usize;
+    let useful = case.estimate(count).useful_ranks;
     if case.parts(count, [1; 2]).is_none() {
         return Some(format!("{}; the run would be refused with {CASE}", case.too_many(count)));
     }

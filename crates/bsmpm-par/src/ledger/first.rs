@@ -25,7 +25,7 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
         upper: case.grid.upper()[..axes.len()].to_vec(),
         cell: axes.iter().map(longest).collect(),
     });
-    let estimate = case.estimate();
+    let estimate = case.estimate(ranks);
     manifest.sizes = [("points", estimate.points), ("cells", estimate.cells), ("nodes", estimate.nodes)]
         .map(|(k, v)| (k.into(), v))
         .into();
@@ -40,7 +40,7 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
         })
         .collect();
     manifest.choices.extend(setup::choices(case, ranks, &arguments.petsc));
-    manifest.warnings = setup::warnings(case);
+    manifest.warnings = setup::warnings(case, ranks);
     manifest.versions = versions();
     let smooths = case.stabilisation.lowers() || case.stabilisation == Stabilisation::ModifiedFBar;
     manifest.summary.smoothing_passes = smooths.then_some(0.0);

@@ -33,7 +33,13 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
         let told = |error: Error| Error::new(error.kind(), format!("{file}: {error}"));
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(told)?;
-        let found = if stl::is_binary(&bytes) { stl::triangles(&bytes) } else { text_rows(bytes, (along, axes)) };
+        let found = if stl::is_binary(&bytes) {
+            stl::triangles(&bytes)
+        } else if file.to_ascii_lowercase().ends_with(".stl") && bytes.contains(&0) {
+            Err(stl::broken(&bytes))
+        } else {
+            text_rows(bytes, (along, axes))
+        };
         whole.push_str(&found.map_err(told)?);
         from = span.end;
     }

@@ -10,8 +10,30 @@ const STL_TRIANGLE: usize = 50;
 /// Whether bytes are binary STL: as many as its number of triangles says, whatever the heading (some begin with
 /// `solid`, as the text format does).
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
-    let number = bytes.get(STL_HEADING - 4..STL_HEADING).and_then(|four| four.try_into().ok()).map(u32::from_le_bytes);
-    number.is_some_and(|number| bytes.len() as u64 == STL_HEADING as u64 + u64::from(number) * STL_TRIANGLE as u64)
+    told(bytes).is_some_and(|number| bytes.len() as u64 == length(number))
+}
+
+/// Triangles that the heading of binary STL tells of.
+fn told(bytes: &[u8]) -> Option<u32> {
+    bytes.get(STL_HEADING - 4..STL_HEADING).and_then(|four| four.try_into().ok()).map(u32::from_le_bytes)
+}
+
+/// Bytes of binary STL of so many triangles.
+fn length(number: u32) -> u64 {
+    STL_HEADING as u64 + u64::from(number) * STL_TRIANGLE as u64
+}
+
+/// Why bytes that are no text are not binary STL either.
+pub(super) fn broken(bytes: &[u8]) -> Error {
+    let message = match told(bytes) {
+        Some(number) => format!(
+            "binary STL of {} bytes, whose heading tells of {number} triangles and so of {} bytes: it is cut off or damaged",
+            bytes.len(),
+            length(number)
+        ),
+        None => format!("binary STL of {} bytes: cut off in its heading of {STL_HEADING}", bytes.len()),
+    };
+    Error::new(ErrorKind::InvalidData, message)
 }
 
 /// Rows of three corners as TOML of binary STL.
@@ -81,6 +103,10 @@ mod tests {
         assert_eq!(triangles(&bytes).unwrap(), row);
         bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
         assert_eq!(triangles(&bytes).unwrap_err().to_string(), "triangle 1 has a corner that is no number");
+        let cut =
+            "binary STL of 133 bytes, whose heading tells of 1 triangles and so of 134 bytes: it is cut off or damaged";
+        assert_eq!(broken(&bytes[..133]).to_string(), cut);
+        assert_eq!(broken(&bytes[..80]).to_string(), "binary STL of 80 bytes: cut off in its heading of 84");
         let message = |text: &str| facets(text).unwrap_err().to_string();
         assert_eq!(message(&text.replace("vertex 0 0 0", "vertex 0 x 0")), "line 4: a vertex has three numbers");
         assert_eq!(message(&text.replace("vertex 0 0 0", "")), "line 8: a facet has three vertices");

@@ -62,9 +62,19 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
     let drains = case.flow.iter().flat_map(|flow| &flow.drains).zip(record.records("drain"));
     for (drain, record) in drains {
-        if drain.site == DrainSite::Face(AXIS) {
-            record.error("face", "is the axis of an axisymmetric case: it has no area to drain", report);
+        match &drain.site {
+            DrainSite::Face(AXIS) => {
+                record.error("face", "is the axis of an axisymmetric case: it has no area to drain", report);
+            }
+            DrainSite::Lines(lines) if record.gives("from") => {
+                lines.iter().for_each(|ends| on_axis(*ends, record, report));
+            }
+            _ => {}
         }
+    }
+    let inflows = case.flow.iter().flat_map(|flow| &flow.inflows).zip(record.records("inflow"));
+    for (inflow, record) in inflows {
+        inflow.site.ends().into_iter().for_each(|ends| on_axis(ends, record, report));
     }
 }
 

@@ -182,7 +182,7 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         solver.error("linear", message, report);
         return;
     }
-    let (dims, active) = (case.grid.dims(), case.estimate().active);
+    let (dims, active) = (case.grid.dims(), case.estimate(1).active);
     if dims < 3 && is_own {
         solver.error("linear", "\"spline-multigrid\" was shown to be right for solids only: \"direct\"", report);
         return;

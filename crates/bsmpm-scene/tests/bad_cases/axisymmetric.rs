@@ -2,6 +2,11 @@
 
 use super::{Row, row};
 
+const DRAINED: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = 1e-6\n[water]\nlevel = 1.0\n\
+    [[drain]]\nface = \"bottom\"\n[[drain]]\nfrom = [0.0, 0.0]\nto = [0.0, 1.0]\n";
+const FED: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\npermeability = 1e-6\n[water]\nlevel = 1.0\n\
+    [[drain]]\nface = \"bottom\"\n[[inflow]]\nfrom = [0.0, 0.0]\nto = [0.0, 1.0]\nrate = 1e-6\n";
+
 /// What an axisymmetric case must not have.
 pub const AXISYMMETRIC: &[Row] = &[
     row("lower = [0.0, 0.0]\nupper = [2.0", "lower = [-1.0, 0.0]\nupper = [2.0", "grid.lower", "begins at the axis"),
@@ -22,6 +27,8 @@ pub const AXISYMMETRIC: &[Row] = &[
         "lies on the axis",
     )
     .down(1),
+    row("density = 2000", DRAINED, "drain.1.from", "lies on the axis").down(9),
+    row("density = 2000", FED, "inflow.0.from", "lies on the axis").down(9),
     row("acceleration = [0.0", "acceleration = [1.0", "gravity.acceleration", "x is the radius"),
     row("velocity = [0.0", "velocity = [1.0", "body.0.velocity", "x is the radius"),
     row(

@@ -40,7 +40,7 @@ impl RunOrder {
     /// What it takes of the machine.
     pub fn load(&self, ranks: usize) -> PoolLoad {
         let steps = self.case.analysis.end / self.case.analysis.dt;
-        PoolLoad { memory: self.case.estimate().bytes_with_newton_on(ranks), work: self.case.points() as f64 * steps }
+        PoolLoad { memory: self.case.estimate(ranks).bytes_with_newton, work: self.case.points() as f64 * steps }
     }
 
     /// m  the size of its cells: the edge of a square, of a solid a cube, as large as the largest.

@@ -128,7 +128,8 @@ pub(super) fn estimate(
         ),
         None => (guess.work, "the start of the case alone: no step ended in time".to_owned()),
     };
-    let spread = levels.last().map_or(1.0, |level| stored::spread(plan.case, measured.unknowns, level.spread));
+    let spread =
+        levels.last().map_or(1.0, |level| stored::spread(plan.case, plan.ranks, measured.unknowns, level.spread));
     let unit = measured.unit * spread;
     let newton = levels.iter().map(|level| level.work.newton_part()).fold(made.newton_part(), f64::max);
     let band = if newton > NEWTON[0] { NEWTON[1] } else { BANDS[levels.len().min(BANDS.len() - 1)] };

@@ -66,7 +66,7 @@ impl EstimateBand {
 impl EstimateReport {
     /// Of a run of a case on so many ranks; `speed` is that of this machine.
     pub fn of(path: &Path, case: &Case, ranks: usize, (speed, found): (f64, &StoredEstimate)) -> Self {
-        let estimate = case.estimate();
+        let estimate = case.estimate(ranks);
         let steps = found.work.steps;
         let frames = sizes::frames(case, steps);
         let cpu = found.seconds(frames);
@@ -82,8 +82,7 @@ impl EstimateReport {
             unknowns: found.unknowns.unwrap_or(estimate.active),
             pressures: Some(estimate.pressures).filter(|pressures| *pressures > 0),
             non_zeros: estimate.entries,
-            memory_per_rank: [estimate.bytes_on(ranks), estimate.bytes_with_newton_on(ranks)]
-                .map(|all| all / ranks as u64),
+            memory_per_rank: [estimate.bytes, estimate.bytes_with_newton].map(|all| all / ranks as u64),
             frames,
             checkpoints,
             sizes: bytes,
@@ -204,7 +203,7 @@ mod tests {
 
     fn report() -> EstimateReport {
         let case = Case::from_text("column", COLUMN, &[]).unwrap();
-        EstimateReport::of(Path::new("column.toml"), &case, 2, (1.0, &stored::guess(&case, 1.0)))
+        EstimateReport::of(Path::new("column.toml"), &case, 2, (1.0, &stored::guess(&case, 2, 1.0)))
     }
 
     #[test]

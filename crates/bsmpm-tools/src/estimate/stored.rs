@@ -60,20 +60,20 @@ impl StoredEstimate {
 }
 
 /// An estimate from what runs took elsewhere; `speed` is this machine's time over that of the other one.
-pub(super) fn guess(case: &Case, speed: f64) -> StoredEstimate {
+pub(super) fn guess(case: &Case, ranks: usize, speed: f64) -> StoredEstimate {
     let plastic = case.materials.iter().any(|named| named.material.yields());
     let kind = match (plastic, case.analysis.regime) {
         (false, _) => 0,
         (true, Regime::Dynamic) => 1,
         (true, Regime::QuasiStatic) => 2,
     };
-    let (sizes, steps) = (case.estimate(), sizes::steps(case));
+    let (sizes, steps) = (case.estimate(ranks), sizes::steps(case));
     let points = case.points() as f64;
-    let evaluations = in_space(case).map_or(EVALUATIONS, |solver| EVALUATIONS_IN_SPACE[solver])[kind];
+    let evaluations = in_space(case, ranks).map_or(EVALUATIONS, |solver| EVALUATIONS_IN_SPACE[solver])[kind];
     let [more, dearer] = if case.flow.is_some() { FLOWING } else { [1.0; 2] };
     StoredEstimate {
         work: Effort { steps, evaluations: more * evaluations * steps, ..Effort::default() },
-        unit: speed * dearer * unit(case, sizes.active as f64),
+        unit: speed * dearer * unit((case, ranks), sizes.active as f64),
         start: speed * START,
         frame: speed * (FRAME[0] + FRAME[1] * points),
         bytes: Bytes::of(case),
@@ -86,8 +86,8 @@ pub(super) fn guess(case: &Case, speed: f64) -> StoredEstimate {
 }
 
 /// How the linear systems of a solid are solved, as the second index of the coefficients; none in a plane.
-fn in_space(case: &Case) -> Option<usize> {
-    let linear = &case.solver.linear;
+fn in_space(case: &Case, ranks: usize) -> Option<usize> {
+    let linear = case.solver.linear_on(ranks);
     let solver = match linear.pc {
         _ if linear.factor.is_some() => 0,
         Pc::Gamg | Pc::SplineMultigrid => 2,
@@ -97,18 +97,18 @@ fn in_space(case: &Case) -> Option<usize> {
 }
 
 /// s  of a unit of work with so many unknowns.
-fn unit(case: &Case, unknowns: f64) -> f64 {
+fn unit((case, ranks): (&Case, usize), unknowns: f64) -> f64 {
     let points = case.points() as f64;
-    let Some(solver) = in_space(case) else { return POINT * points + UNKNOWN * unknowns };
+    let Some(solver) = in_space(case, ranks) else { return POINT * points + UNKNOWN * unknowns };
     let dearer = if solver == 0 { (unknowns / FACTORISED).max(1.0) } else { 1.0 };
     POINT_IN_SPACE * points + UNKNOWN_IN_SPACE[solver] * dearer * unknowns
 }
 
 /// How much dearer a unit of work becomes where the body spreads to so many times the nodes: that of the points does
 /// not.
-pub(super) fn spread(case: &Case, unknowns: Option<u64>, nodes: f64) -> f64 {
-    let unknowns = unknowns.unwrap_or(case.estimate().active) as f64;
-    unit(case, nodes * unknowns) / unit(case, unknowns)
+pub(super) fn spread(case: &Case, ranks: usize, unknowns: Option<u64>, nodes: f64) -> f64 {
+    let unknowns = unknowns.unwrap_or(case.estimate(ranks).active) as f64;
+    unit((case, ranks), nodes * unknowns) / unit((case, ranks), unknowns)
 }
 
 #[cfg(test)]
@@ -131,7 +131,7 @@ mod tests {
         for (text, set, took) in runs {
             let set: Vec<String> = set.iter().map(ToString::to_string).collect();
             let case = Case::from_text("solid", text, &set).unwrap();
-            let told = guess(&case, 1.0).seconds(sizes::frames(&case, sizes::steps(&case)));
+            let told = guess(&case, 1, 1.0).seconds(sizes::frames(&case, sizes::steps(&case)));
             println!("{set:?}: {told:.1} s for {took}");
             assert!((1.0 / BAND..BAND).contains(&(told / took)), "{set:?}: {told} s for {took}");
         }

@@ -22,7 +22,7 @@ fn f37_the_estimate_is_near_the_measured_peak() {
         let path = shipped(&format!("{name}.toml"));
         let overrides: Vec<String> = set.iter().map(ToString::to_string).collect();
         let case = Case::from_bytes(name, &bsmpm_scene::load(&path).unwrap(), &overrides).unwrap();
-        let estimate = case.estimate().bytes_on(ranks) as f64;
+        let estimate = case.estimate(ranks).bytes as f64;
         let scratch = Scratch::new();
         let set = set.iter().flat_map(|set| ["--set", set]);
         let arguments = [path.to_str().unwrap(), "-q", "-o", "out", "--max-steps", "1"].into_iter().chain(set);
