@@ -90,13 +90,9 @@ fn a_slice_between_rollers_is_plane_strain_but_for_f_bars_exponent() {
     let pairs = [("displacement-x", "displacement-x"), ("displacement-y", "displacement-z")];
     let stresses = [("stress-xx", "stress-xx"), ("stress-yy", "stress-zz"), ("stress-zz", "stress-yy")];
     let [one, two] = [[PLANE.to_owned(), slice()], [layered(PLANE), layered(&slice())]];
-    for (case, method, least, most) in [
-        (&one, "none", 0.0, 1e-11),
-        (&two, "none", 0.0, 1e-10),
-        (&one, "consistent-f-bar", 1e-4, 1e-2),
-        (&one, "f-bar", 1e-4, 1e-2),
-        (&one, "f-bar-zhao", 1e-4, 1e-2),
-    ] {
+    for (case, method, least, most) in
+        [(&one, "none", 0.0, 1e-11), (&two, "none", 0.0, 1e-10), (&one, "consistent-f-bar", 1e-4, 1e-2)]
+    {
         let (plane, solid) = (run(&case[0], method), run(&case[1], method));
         for (of_plane, of_solid) in pairs.into_iter().chain(stresses) {
             let [expected, found] = [at(&plane, of_plane, 0.3), at(&solid, of_solid, 0.3)];
