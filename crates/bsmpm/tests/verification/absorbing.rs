@@ -182,7 +182,7 @@ fn shot<K: Kinematics<2>>(cells: usize, absorbs: bool, places: &[[f64; 2]]) -> V
 
 /// Waves that come aslant leave for the better part only: what is wrong over the largest velocity there, until the
 /// faces of a square twice as wide are felt.
-fn most_leaves<K: Kinematics<2>>(bounds: [f64; 4]) {
+fn most_leaves<K: Kinematics<2>>(bounds: [f64; 4], least: f64) {
     let places = [[2.25, 2.25], [5.25, 0.25], [9.25, 0.25], [8.25, 8.25]];
     let [right, absorbed, fixed] =
         [(40, false), (20, true), (20, false)].map(|(n, absorbs)| shot::<K>(n, absorbs, &places));
@@ -192,14 +192,14 @@ fn most_leaves<K: Kinematics<2>>(bounds: [f64; 4]) {
             found.iter().zip(&right).map(|(found, right)| (found[k] - right[k]).norm()).fold(0.0, f64::max) / largest
         };
         let [absorbed, fixed] = [off(&absorbed), off(&fixed)];
-        assert!(absorbed < bound && fixed > 3.0 * absorbed, "{at:?}: {absorbed}, fixed {fixed}");
+        assert!(absorbed < bound && fixed > least, "{at:?}: {absorbed}, fixed {fixed}");
     }
 }
 
 #[test]
 fn of_a_source_at_a_point_most_leaves() {
     // 5.8, 1.7 %; right at a side and in a corner 23 %. Faces that are fixed: 77 % and more.
-    most_leaves::<PlaneStrain>([0.07, 0.025, 0.26, 0.26]);
+    most_leaves::<PlaneStrain>([0.07, 0.025, 0.26, 0.26], 0.7);
     // 6.5, 4.5, 22, 17 %; fixed 32, 35, 105, 79 %.
-    most_leaves::<Axisymmetric>([0.07, 0.05, 0.25, 0.19]);
+    most_leaves::<Axisymmetric>([0.07, 0.05, 0.25, 0.19], 0.3);
 }
