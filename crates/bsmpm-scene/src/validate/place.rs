@@ -92,7 +92,9 @@ pub(super) fn at_volume(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool 
             let off = |k: usize| (k as f64 - 1.0) * part * half;
             [at[0] + off(n / 9), at[1] + off(n / 3 % 3), at[2] + off(n % 3)]
         };
-        DISTANCES.iter().any(|part| (0..27).any(|n| body.region.contains_in_space(place(*part, n))))
+        let [lower, upper] = body.region.corners();
+        let near = (0..3).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
+        near && DISTANCES.iter().any(|part| (0..27).any(|n| body.region.contains_in_space(place(*part, n))))
     })
 }
 

@@ -11,6 +11,8 @@ use std::sync::Arc;
 /// Longest edge of a sphere's triangles in parts of what an octant's arcs are divided by: corners at equal parts of the
 /// flat octant lie farthest apart in its middle.
 const STRETCHED: f64 = 2.45;
+/// Largest radius of a sphere in spacings of points: of more than two million triangles.
+const LARGEST: f64 = 200.0;
 
 /// The triangles that a traction's `surface` or `sphere` gives: inside the grid, at bodies, in one piece, turned alike.
 pub(super) fn triangles(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Arc<[Triangle]>> {
@@ -19,9 +21,18 @@ pub(super) fn triangles(record: &Record, around: AroundStrip<'_>, report: &mut R
         true => {
             let sphere = record.record("sphere")?;
             let (center, radius) = (sphere.vector("center")?, sphere.number("radius")?);
-            let across = bodies.iter().map(|body| body.points_per_cell).max()?;
+            let spacing = grid.shortest() / bodies.iter().map(|body| body.points_per_cell).max()? as f64;
+            if radius > LARGEST * spacing {
+                let message = format!(
+                    "its radius is {:.0} spacings of points; allowed: up to {LARGEST}; give the part of it in the grid as a \
+                     surface",
+                    radius / spacing
+                );
+                sphere.error("radius", message, report);
+                return None;
+            }
             let inside = |triangle: &Triangle| beyond(grid, middle(triangle)).is_none();
-            ("sphere", sphere_of(center, radius, grid.shortest() / across as f64).into_iter().filter(inside).collect())
+            ("sphere", sphere_of(center, radius, spacing).into_iter().filter(inside).collect())
         }
         false => ("surface", given(record, report)?),
     };
@@ -33,7 +44,7 @@ pub(super) fn triangles(record: &Record, around: AroundStrip<'_>, report: &mut R
         }
         _ => None,
     };
-    let away = || found.iter().map(middle).find(|at| !at_volume(bodies, grid, *at));
+    let away = || found.iter().flat_map(places).find(|at| !at_volume(bodies, grid, *at));
     let away = || Some(format!("no body is at {:?} at the start; allowed: half a spacing of points from one", away()?));
     if let Some(message) = wrong.or_else(away) {
         record.error(key, message, report);
@@ -54,6 +65,13 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Vec<Triangle>> {
         return None;
     }
     Some(all)
+}
+
+/// m  the middle of a triangle and of what is left at its corners
+fn places(triangle: &Triangle) -> [[f64; 3]; 4] {
+    let middle = middle(triangle);
+    let at = |corner: usize| [0, 1, 2].map(|axis| 0.5 * (middle[axis] + triangle[corner][axis]));
+    [middle, at(0), at(1), at(2)]
 }
 
 /// m  where the corners are in the mean

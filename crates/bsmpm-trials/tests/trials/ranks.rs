@@ -69,7 +69,7 @@ fn the_bits_are_the_same_with_the_vectors_of_any_machine() {
         let mut histories = ["sse2", "avx2", "avx512"].iter().filter_map(|vectors| {
             let arguments = [&case, "-q", "--max-steps", "12", "-o", vectors];
             let run = scratch.job(None, &arguments).variable("BSMPM_LANES", vectors).run();
-            if run.code == Some(64) && run.stderr.contains("this machine has no such vectors") {
+            if run.code == Some(2) && run.stderr.contains("this machine has no such vectors") {
                 println!("not compared here: {vectors}");
                 return None;
             }
