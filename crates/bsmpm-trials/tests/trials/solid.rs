@@ -79,7 +79,8 @@ fn layered(case: &str) -> String {
 }
 
 /// F-bar's exponent is 1/2 in plane strain and 1/3 in space: two discretisations of the same body, which differ by as
-/// much as `cases/results/solid.md` says.
+/// much as `cases/results/solid.md` says: most across the slice, where a solid's F-bar stretches too and a plane's does
+/// not.
 #[test]
 fn a_slice_between_rollers_is_plane_strain_but_for_f_bars_exponent() {
     let run = |case: &str, method: &str| {
@@ -90,14 +91,19 @@ fn a_slice_between_rollers_is_plane_strain_but_for_f_bars_exponent() {
     let pairs = [("displacement-x", "displacement-x"), ("displacement-y", "displacement-z")];
     let stresses = [("stress-xx", "stress-xx"), ("stress-yy", "stress-zz"), ("stress-zz", "stress-yy")];
     let [one, two] = [[PLANE.to_owned(), slice()], [layered(PLANE), layered(&slice())]];
-    for (case, method, least, most) in
-        [(&one, "none", 0.0, 1e-11), (&two, "none", 0.0, 1e-10), (&one, "consistent-f-bar", 1e-4, 1e-2)]
-    {
+    for (case, method, least, most) in [
+        (&one, "none", 0.0, 1e-11),
+        (&two, "none", 0.0, 1e-10),
+        (&one, "consistent-f-bar", 1e-4, 1e-2),
+        (&one, "f-bar", 1e-4, 2e-2),
+        (&one, "f-bar-zhao", 1e-4, 2e-2),
+    ] {
         let (plane, solid) = (run(&case[0], method), run(&case[1], method));
         for (of_plane, of_solid) in pairs.into_iter().chain(stresses) {
             let [expected, found] = [at(&plane, of_plane, 0.3), at(&solid, of_solid, 0.3)];
             let apart = found / expected - 1.0;
             println!("{method}, {of_solid}: {apart:e}");
+            let most = if method.starts_with("f-bar") && of_solid == "stress-yy" { 0.1 } else { most };
             assert!((least..most).contains(&apart.abs()), "{method}, {of_solid}: {found} for {expected}");
         }
         assert!(at(&solid, "displacement-y", 0.3).abs() < 1e-14 && at(&plane, "displacement-x", 0.3) > 0.05);

@@ -3,6 +3,7 @@
 use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{at, history};
+use std::f64::consts::PI;
 
 /// A cube on three rollers that is loaded along one axis.
 const CUBE: &str = r#"
@@ -280,4 +281,93 @@ fn a_disc_is_the_same_on_all_numbers_of_ranks_and_goes_on_to_the_bit() {
         assert!((found / force - 1.0).abs() < 1e-8, "{ranks}: {found} {force}");
     }
     scratch.goes_on(2, &["2", "4"]);
+}
+
+/// An eighth of a hollow sphere under a pressure inside.
+const HOLLOW: &str = r#"
+geometry = "solid"
+[analysis]
+type = "quasi-static"
+steps = 1
+[grid]
+lower = [0, 0, 0]
+upper = [1.2, 1.2, 1.2]
+cell = 0.1
+order = "quadratic"
+[material.wall]
+model = "hencky"
+young = "10 MPa"
+poisson = 0.3
+[[body]]
+material = "wall"
+surface = { triangles = BALL }
+subtract = [{ sphere = { center = [0, 0, 0], radius = 0.5 } }]
+points_per_cell = 3
+[[traction]]
+sphere = { center = [0, 0, 0], radius = 0.5 }
+pressure = "1 kPa"
+ramp = 1.0
+[boundary]
+left = "roller"
+front = "roller"
+bottom = "roller"
+[stabilisation]
+method = "none"
+[solver]
+tolerance = 1e-12
+force_tolerance = 1e-8
+[[history]]
+quantity = "displacement"
+name = "inner"
+at = [0.28867513, 0.28867513, 0.28867513]
+[[history]]
+quantity = "reaction"
+face = "left"
+"#;
+
+/// Rows of triangles of an eighth of a sphere, turned outwards; closed by the planes of symmetry or not.
+fn eighth(radius: f64, parts: usize, closed: bool) -> String {
+    let corner = |(i, j): (usize, usize)| {
+        let flat = [i, j, parts - i - j].map(|part| part as f64);
+        let length = flat.iter().map(|part| part * part).sum::<f64>().sqrt();
+        flat.map(|along| (radius * along / length).to_string()).join(", ")
+    };
+    let mut rows = Vec::new();
+    for i in 0..parts {
+        for j in 0..parts - i {
+            rows.push([(i + 1, j), (i, j + 1), (i, j)].map(corner));
+            if i + j + 2 <= parts {
+                rows.push([(i + 1, j), (i + 1, j + 1), (i, j + 1)].map(corner));
+            }
+        }
+        if closed {
+            for [from, to] in [[(0, i), (0, i + 1)], [(i + 1, 0), (i, 0)], [(i, parts - i), (i + 1, parts - i - 1)]] {
+                rows.push(["0.0, 0.0, 0.0".into(), corner(from), corner(to)]);
+            }
+        }
+    }
+    let rows: Vec<String> = rows.iter().map(|row| format!("[{}]", row.join(", "))).collect();
+    format!("[{}]", rows.join(", "))
+}
+
+/// Lamé (1852): u(a) = p a^3 ((1 - 2 nu) a + (1 + nu) b^3/(2 a^2))/(E (b^3 - a^3)); a plane of symmetry holds
+/// p pi a^2/4.
+#[test]
+fn a_hollow_sphere_under_pressure_inside_is_lames_by_a_sphere_and_by_triangles() {
+    let (a, b, young, poisson, load) = (0.5_f64, 1.0_f64, 1e7, 0.3, 1e3);
+    let wall = (1.0 - 2.0 * poisson) * a + (1.0 + poisson) * b.powi(3) / (2.0 * a * a);
+    let (moved, held) = (load * a.powi(3) * wall / (young * (b.powi(3) - a.powi(3))), load * PI * a * a / 4.0);
+    let hollow = changed(HOLLOW, "BALL", &eighth(b, 24, true));
+    let sphere = "sphere = { center = [0, 0, 0], radius = 0.5 }\npressure";
+    let triangles = format!("surface = {{ triangles = {} }}\npressure", eighth(a, 24, false));
+    for (line, ranks) in [(sphere, 1), (&triangles, 2)] {
+        let scratch = Scratch::with_case(&changed(&hollow, sphere, line));
+        scratch.mpirun(ranks, &["case.toml", "-q", "-o", "out"]).expect(0);
+        let table = history(&scratch.path("out"));
+        let inner = ["x", "y", "z"].map(|along| at(&table, &format!("inner-{along}"), 1.0) * 3.0_f64.sqrt() / moved);
+        let reaction = at(&table, "reaction-x", 1.0) / -held; // of the face on the body
+        println!("{inner:?} of Lame's, reaction {reaction}");
+        assert!(inner.iter().all(|part| (part - 1.0).abs() < 0.01), "{inner:?}");
+        assert!((reaction - 1.0).abs() < 2e-3, "{reaction}");
+    }
 }
