@@ -150,13 +150,8 @@ fn on_line<K: Kinematics<D>, const D: usize>(
         }
         LoadedLine::Triangles(triangles) => {
             let base = vector::<D, _>(case.grid.lower());
-            let longest = case.grid.shortest() / across as f64;
-            let of = |triangle: &Triangle| {
-                let corners = triangle.map(|at| vector::<D, _>(at) - base);
-                let normal = normal_of(triangle);
-                surface::triangle::<D>(corners, longest).into_iter().map(move |point| (point, vector(normal)))
-            };
-            triangles.iter().flat_map(of).unzip()
+            let point = |triangle: &Triangle| SurfacePoint::of_triangle(triangle.map(|at| vector::<D, _>(at) - base));
+            triangles.iter().map(|triangle| (point(triangle), vector(normal_of(triangle)))).unzip()
         }
     }
 }

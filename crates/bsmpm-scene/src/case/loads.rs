@@ -186,7 +186,7 @@ pub enum LoadedLine {
     },
     /// Of a solid.
     Plate(Plate),
-    /// Of a solid: a curved surface, turned alike
+    /// Of a solid: a curved surface in pieces as small as the spacing of points, turned alike
     Triangles(Arc<[Triangle]>),
 }
 

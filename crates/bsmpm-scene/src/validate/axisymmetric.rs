@@ -48,12 +48,11 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
     for boundary in tables {
         for side in Side::ALL.into_iter().flatten() {
             let (found, word) = (super::support(boundary, side), side.word());
-            if Face::of(side, Geometry::Axisymmetric) == Some(AXIS)
-                && found.is_some_and(|found| found != Support::Roller)
-            {
-                boundary.error(word, "is the axis of an axisymmetric case; allowed: \"roller\"", report);
-            }
-            if found == Some(Support::FreeField) {
+            if Face::of(side, Geometry::Axisymmetric) == Some(AXIS) {
+                if found.is_some_and(|found| found != Support::Roller) {
+                    boundary.error(word, "is the axis of an axisymmetric case; allowed: \"roller\"", report);
+                }
+            } else if found == Some(Support::FreeField) {
                 let message = "a free field shakes sideways, which has no rotational symmetry: \"absorbing\", or a roller \
                                far enough away";
                 boundary.error(word, message, report);

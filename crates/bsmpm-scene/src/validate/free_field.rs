@@ -1,7 +1,7 @@
 //! Sides that follow a free field.
 
 use super::physics::reached;
-use crate::case::{Body, Case, LoadedLine, Rigid, RigidShape, Site, Support};
+use crate::case::{Body, Case, Geometry, LoadedLine, Rigid, RigidShape, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces::outline;
@@ -11,7 +11,8 @@ use crate::words::{Side, Word};
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let Some(boundary) = record.record("boundary") else { return };
     for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        if case.boundary[axis][upper] != Support::FreeField {
+        // An axisymmetric case has none: `axisymmetric.rs` says so.
+        if case.boundary[axis][upper] != Support::FreeField || case.geometry == Geometry::Axisymmetric {
             continue;
         }
         let mut refuse = |message: String| boundary.error(Side::ALL[axis][upper].word(), message, report);

@@ -2,7 +2,7 @@
 
 use super::material::profile;
 use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring};
-use super::sheet::triangles;
+use super::sheet::pieces;
 use super::site::{AroundStrip, places, plate, segment};
 use crate::case::{
     Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Rigid, Shares, Site, Traction,
@@ -49,7 +49,7 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         return Some(LoadedLine::Plate(plate));
     }
     if record.gives("surface") || record.gives("sphere") {
-        return Some(LoadedLine::Triangles(triangles(record, around, report)?));
+        return Some(LoadedLine::Triangles(pieces(record, around, report)?));
     }
     let [from, to] = segment(record, around, report)?;
     acts_on_body(record, "from", along([from, to]), around, report);

@@ -3,54 +3,50 @@
 use super::place::{at_volume, beyond};
 use super::site::AroundStrip;
 use crate::case::Triangle;
+use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::region::edges_of;
 use crate::report::Report;
+use bsmpm::tensor::Vector;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Longest edge of a sphere's triangles in parts of what an octant's arcs are divided by: corners at equal parts of the
 /// flat octant lie farthest apart in its middle.
-const STRETCHED: f64 = 2.45;
-/// Largest radius of a sphere in spacings of points: of more than two million triangles.
-const LARGEST: f64 = 200.0;
+const STRETCHED: f64 = 2.5;
+/// Largest area in squares of the spacing of points: a million pieces.
+const LARGEST: f64 = 2e5;
 
-/// The triangles that a traction's `surface` or `sphere` gives: inside the grid, at bodies, in one piece, turned alike.
-pub(super) fn triangles(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Arc<[Triangle]>> {
+/// The surface that a traction's `surface` or `sphere` gives, in pieces as small as the spacing of points: inside the
+/// grid, at bodies everywhere, in one piece, turned alike.
+pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Arc<[Triangle]>> {
     let (grid, bodies) = (around.grid.filter(|grid| grid.dims() == 3)?, around.bodies?);
-    let (key, found) = match record.gives("sphere") {
-        true => {
-            let sphere = record.record("sphere")?;
-            let (center, radius) = (sphere.vector("center")?, sphere.number("radius")?);
-            let spacing = grid.shortest() / bodies.iter().map(|body| body.points_per_cell).max()? as f64;
-            if radius > LARGEST * spacing {
-                let message = format!(
-                    "its radius is {:.0} spacings of points; allowed: up to {LARGEST}; give the part of it in the grid as a \
-                     surface",
-                    radius / spacing
-                );
-                sphere.error("radius", message, report);
-                return None;
-            }
-            let inside = |triangle: &Triangle| beyond(grid, middle(triangle)).is_none();
-            ("sphere", sphere_of(center, radius, spacing).into_iter().filter(inside).collect())
-        }
-        false => ("surface", given(record, report)?),
+    let spacing = grid.shortest() / bodies.iter().map(|body| body.points_per_cell).max()? as f64;
+    let (key, found) = if record.gives("sphere") {
+        let sphere = record.record("sphere")?;
+        let (center, radius) = (sphere.vector("center")?, sphere.number("radius")?);
+        let part = |_| sphere_of(center, radius, spacing).into_iter().flat_map(|of| inside(grid, of)).collect();
+        ("sphere", countable(2.0 * TAU * radius * radius, spacing).map(part))
+    } else {
+        let all = given(record, report)?;
+        let wrong = all.iter().flatten().find_map(|corner| beyond(grid, *corner)).map_or(Ok(()), Err);
+        let sound = wrong.and_then(|()| in_one_piece(&all));
+        let sound = sound.and_then(|()| countable(all.iter().map(area).sum(), spacing));
+        ("surface", sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>()))
     };
-    let wrong = match &found[..] {
-        [] if key == "sphere" => Some("no part of it is inside the grid".into()),
-        [] => Some("it has no triangle".into()),
-        all if key == "surface" => {
-            all.iter().flatten().find_map(|corner| beyond(grid, *corner)).or_else(|| in_one_piece(all).err())
-        }
-        _ => None,
+    let at_bodies = |all: Vec<Triangle>| match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
+        Some(at) => Err(format!("no body is at {at:?} at the start; allowed: half a spacing of points from one")),
+        None if all.is_empty() => Err("no part of it is inside the grid".into()),
+        None => Ok(all),
     };
-    let away = || found.iter().flat_map(places).find(|at| !at_volume(bodies, grid, *at));
-    let away = || Some(format!("no body is at {:?} at the start; allowed: half a spacing of points from one", away()?));
-    if let Some(message) = wrong.or_else(away) {
-        record.error(key, message, report);
-        return None;
-    }
-    Some(found.into())
+    found.and_then(at_bodies).map_err(|message| record.error(key, message, report)).ok().map(Arc::from)
+}
+
+/// Whether an area, m², is not too large for the spacing of points, m.
+fn countable(area: f64, spacing: f64) -> Result<(), String> {
+    let squares = area / spacing.powi(2);
+    let message = || format!("it has {squares:.0} squares of the spacing of points; allowed: up to {LARGEST}");
+    if squares > LARGEST { Err(message()) } else { Ok(()) }
 }
 
 /// The triangles of a record's table, m, without those that are a line or a place.
@@ -61,22 +57,59 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Vec<Triangle>> {
     let rows = table.rows("triangles")?.iter().map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
     let all: Vec<Triangle> = rows.filter(|triangle| crate::surfaces::normal_of(triangle) != [0.0; 3]).collect();
     if all.is_empty() {
-        table.error("triangles", "none of them has an area", report);
+        table.error("triangles", "there is none that has an area", report);
         return None;
     }
     Some(all)
 }
 
-/// m  the middle of a triangle and of what is left at its corners
-fn places(triangle: &Triangle) -> [[f64; 3]; 4] {
-    let middle = middle(triangle);
-    let at = |corner: usize| [0, 1, 2].map(|axis| 0.5 * (middle[axis] + triangle[corner][axis]));
-    [middle, at(0), at(1), at(2)]
-}
-
 /// m  where the corners are in the mean
 pub(super) fn middle([a, b, c]: &Triangle) -> [f64; 3] {
     [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0)
+}
+
+/// m²
+fn area([a, b, c]: &Triangle) -> f64 {
+    let [along, across] = [b, c].map(|end| Vector::<3>::from(*end) - Vector::from(*a));
+    0.5 * along.cross(&across).norm()
+}
+
+/// A triangle in pieces without a longer edge than this, m, that turn as it does; those of triangles that have an edge
+/// in common have theirs in common.
+fn split(triangle: Triangle, longest: f64) -> Vec<Triangle> {
+    let (mut whole, mut pieces) = (vec![triangle], Vec::new());
+    while let Some([a, b, c]) = whole.pop() {
+        let length = |edge: &Triangle| (Vector::<3>::from(edge[1]) - Vector::from(edge[0])).norm();
+        let turned = [[b, c, a], [c, a, b]].into_iter();
+        let [a, b, c] = turned.fold([a, b, c], |most, edge| if length(&edge) > length(&most) { edge } else { most });
+        if length(&[a, b, c]) > longest {
+            let middle = [0, 1, 2].map(|axis| 0.5 * (a[axis] + b[axis]));
+            whole.extend([[a, middle, c], [middle, b, c]]);
+        } else {
+            pieces.push([a, b, c]);
+        }
+    }
+    pieces
+}
+
+/// What of a triangle is inside the grid, in triangles that turn as it does.
+fn inside(grid: &GridSpec, triangle: Triangle) -> Vec<Triangle> {
+    let mut corners = triangle.to_vec();
+    for (axis, sign, face) in
+        (0..3).flat_map(|axis| [(axis, 1.0, grid.lower()[axis]), (axis, -1.0, grid.upper()[axis])])
+    {
+        let depth = |at: [f64; 3]| sign * (at[axis] - face);
+        let next = |k: usize| (corners[k], corners[(k + 1) % corners.len()]);
+        let kept = |(from, to): ([f64; 3], [f64; 3])| {
+            let (before, after) = (depth(from), depth(to));
+            let cut = (before < 0.0) != (after < 0.0) && before != 0.0 && after != 0.0;
+            let mut at = [0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * before / (before - after));
+            at[axis] = face;
+            (before >= 0.0).then_some(from).into_iter().chain(cut.then_some(at))
+        };
+        corners = (0..corners.len()).map(next).flat_map(kept).collect();
+    }
+    (2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]).filter(|of| area(of) > 0.0).collect()
 }
 
 /// Whether triangles hang together by their edges and turn alike.
@@ -114,8 +147,8 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
     }
 }
 
-/// A sphere's triangles, as long as this at most, m, turned outwards, with the sphere's area and its symmetries: an
-/// octant has its own.
+/// A sphere's triangles, about as long as this at most, m, turned outwards, with the sphere's area and its symmetries:
+/// an octant has its own.
 fn sphere_of(center: [f64; 3], radius: f64, longest: f64) -> Vec<Triangle> {
     let parts = (STRETCHED * radius / longest).ceil() as usize;
     let corner = |sign: [f64; 3], i: usize, j: usize| {
@@ -140,16 +173,7 @@ fn sphere_of(center: [f64; 3], radius: f64, longest: f64) -> Vec<Triangle> {
             }
         }
     }
-    let area = |[a, b, c]: &Triangle| {
-        let [p, q] = [b, c].map(|end| [0, 1, 2].map(|axis| end[axis] - a[axis]));
-        0.5 * [0, 1, 2]
-            .map(|k| p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3])
-            .map(|n| n * n)
-            .iter()
-            .sum::<f64>()
-            .sqrt()
-    };
-    let scale = radius * (2.0 * std::f64::consts::TAU / unit.iter().map(area).sum::<f64>()).sqrt();
+    let scale = radius * (2.0 * TAU / unit.iter().map(area).sum::<f64>()).sqrt();
     unit.iter().map(|triangle| triangle.map(|at| [0, 1, 2].map(|axis| center[axis] + scale * at[axis]))).collect()
 }
 
@@ -170,6 +194,36 @@ mod tests {
         let longest =
             longest.map(|(a, b)| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()).fold(0.0, f64::max);
         assert!(longest < 0.1, "{longest}");
+    }
+
+    /// In a quarter of the room, which cuts it beside its middle: what it presses with is the area of its rim.
+    #[test]
+    fn a_sphere_that_the_grid_cuts_has_the_area_of_its_rim() {
+        let axes = [0; 3].map(|_| crate::grid::GridAxis::Uniform { lower: 0.0, cell: 0.1, cells: 20 });
+        let grid = GridSpec { axes: axes.to_vec(), order: 2, lines: Default::default() };
+        let (center, radius) = ([0.03, -0.02, 1.0], 0.5_f64);
+        let all = sphere_of(center, radius, 0.05).into_iter().flat_map(|of| inside(&grid, of));
+        let all: Vec<Triangle> = all.collect();
+        assert!(all.iter().flatten().all(|at| at[0] >= 0.0 && at[1] >= 0.0));
+        let along = |axis: usize| -> f64 { all.iter().map(|of| area(of) * crate::surfaces::normal_of(of)[axis]).sum() };
+        // Of the disc on a face what lies beyond the other one, d from its middle.
+        let rim = |off: f64, d: f64| {
+            let square: f64 = radius * radius - off * off;
+            square * (d / square.sqrt()).acos() - d * (square - d * d).sqrt()
+        };
+        for (axis, exact) in [rim(0.03, 0.02), rim(0.02, -0.03), 0.0].into_iter().enumerate() {
+            assert!((along(axis) - exact).abs() < 2e-4, "{axis}: {} for {exact}", along(axis));
+        }
+    }
+
+    #[test]
+    fn pieces_of_a_triangle_are_small_and_have_its_area() {
+        let triangle = [[0.0, 0.0, 0.0], [3.0, 0.1, 0.0], [0.2, 1.0, 1.0]];
+        let all = split(triangle, 0.25);
+        let sum: f64 = all.iter().map(area).sum();
+        assert!((sum / area(&triangle) - 1.0).abs() < 1e-13 && in_one_piece(&all).is_ok());
+        let length = |of: &Triangle, k: usize| (Vector::<3>::from(of[k]) - Vector::from(of[(k + 1) % 3])).norm();
+        assert!(all.iter().all(|of| (0..3).all(|k| length(of, k) <= 0.25)));
     }
 
     #[test]

@@ -119,27 +119,23 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
             of.error("method", "not shown to be right in a solid yet: \"consistent-f-bar\" or \"f-bar\"", report);
         });
     }
-    large_factor(case, 1).into_iter().for_each(|warning| report.warn(warning));
-}
-
-/// A warning of what a factor in space takes on so many ranks.
-fn large_factor(case: &Case, ranks: usize) -> Option<String> {
-    let estimate = case.estimate(ranks);
-    (estimate.active > MANY && case.solver.linear_on(ranks).factor.is_some()).then(|| {
-        format!(
-            "solver.linear: a factor of up to {} unknowns in space, about {:.1} GB in all, and every doubling of the points takes \
-             2.5 times the memory; with poisson <= 0.45, at rest where soil yields <= 0.4, linear = \"incomplete-cholesky\" \
-             takes a fraction, and else on one rank \"spline-multigrid\" about half",
-            estimate.active,
-            estimate.bytes as f64 / 1e9
-        )
-    })
 }
 
 impl Case {
-    /// Warnings of the case as so many ranks run it: what one rank does otherwise may take more on several.
+    /// Warnings of the case as so many ranks run it: what a factor in space takes on them among them.
     pub fn warnings_on(&self, ranks: usize) -> Vec<String> {
-        let is_other = self.geometry == Geometry::Solid && self.solver.linear_on(ranks) != self.solver.linear;
-        self.warnings.iter().cloned().chain(large_factor(self, ranks).filter(|_| is_other)).collect()
+        let estimate = self.estimate(ranks);
+        let is_factored = self.geometry == Geometry::Solid && self.solver.linear_on(ranks).factor.is_some();
+        let warning = || {
+            format!(
+                "solver.linear: a factor of up to {} unknowns in space, about {:.1} GB in all, and every doubling of the points \
+                 takes 2.5 times the memory; with poisson <= 0.45, at rest where soil yields <= 0.4, linear = \
+                 \"incomplete-cholesky\" takes a fraction, and else on one rank \"spline-multigrid\" about half",
+                estimate.active,
+                estimate.bytes as f64 / 1e9
+            )
+        };
+        let large = (is_factored && estimate.active > MANY).then(warning);
+        self.warnings.iter().cloned().chain(large).collect()
     }
 }

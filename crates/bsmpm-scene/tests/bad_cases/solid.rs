@@ -210,8 +210,15 @@ pub const SOLID: &[Row] = &[
     row(LOADED, "rectangle = { lower = [0.5, 1.0, 2.0], upper = [1.5, 2.0, 2.0] }", "traction.0.rectangle", "no body"),
     row(LOADED, "from = [0, 1]\nto = [1, 1]", "traction.0.from", "loaded on a rectangle"),
     row("center = [3, 1.5", "center = [9, 1.5", "traction.2.sphere", "no part of it is inside the grid"),
-    row("2.0], radius = 0.5 }\npressure", "2.0], radius = 1.5 }\npressure", "traction.2.sphere", "no body is at"),
-    row("2.0], radius = 0.5 }\npressure", "2.0], radius = 51 }\npressure", "traction.2.sphere.radius", "204 spacings"),
+    row("2.0], radius = 0.5 }\nstress", "2.0], radius = 1.5 }\nstress", "traction.2.sphere", "no body is at"),
+    row("2.0], radius = 0.5 }\nstress", "2.0], radius = 51 }\nstress", "traction.2.sphere", "squares of the"),
+    row(
+        "2.0], radius = 0.5 }\nstress = [0, 0, \"1 kPa\"]",
+        "2.0], radius = 0.5 }\npressure = \"1 kPa\"",
+        "traction.2.pressure",
+        "lie on both sides",
+    )
+    .down(1),
     row("[[7.0, 3, 4", "[[9.0, 3, 4", "traction.3.surface", "ends at x"),
     row("[[7.0, 3, 4, 5, 5, 4, 5, 3, 6]", "[[7.0, 3, 4, 5, 3, 6, 5, 5, 4]", "traction.3.surface", "do not turn alike"),
     row("[[7.0, 3, 4, 5, 5, 4,", "[[7.0, 3, 4, 5.001, 5, 4,", "traction.3.surface", "is in 2 pieces"),

@@ -31,33 +31,39 @@ const ACROSS: [[i64; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];
 
 /// Where the material of a frame ends above, in parts of the plane.
 struct Heights {
-    /// m  edges of the parts
+    /// m  edges of the parts: of the largest cell
     part: [f64; 2],
+    /// m  where they begin
+    lower: [f64; 2],
     /// m  by their numbers along x and y
     top: HashMap<[i64; 2], f64>,
 }
 
 impl Heights {
     /// Of a body that goes on so far `above` its highest points, m.
-    fn of(frame: &Frame, part: [f64; 2], above: f64) -> Self {
+    fn of(frame: &Frame, (lower, part): ([f64; 2], [f64; 2]), above: f64) -> Self {
         let mut highest: HashMap<[i64; 2], f64> = HashMap::new();
         for at in &frame.position {
-            let top = highest.entry([0, 1].map(|axis| (at[axis] / part[axis]).floor() as i64)).or_insert(f64::MIN);
+            let of = [0, 1].map(|axis| ((at[axis] - lower[axis]) / part[axis]).floor() as i64);
+            let top = highest.entry(of).or_insert(f64::MIN);
             *top = top.max(at[2] + above);
         }
-        // Between points that were pulled apart a lower one is no pit: a surface is nowhere below what joins two sides.
+        // Where points were pulled apart one of a layer below is the highest: no pit, but a trench is deeper than that.
+        let deepest = part[0].max(part[1]);
         let joined = |at: [i64; 2], by: &[i64; 2]| {
             let beside = |sign: i64| highest.get(&[0, 1].map(|axis| at[axis] + sign * by[axis]));
             Some(beside(-1)?.min(*beside(1)?))
         };
-        let closed =
-            |(at, top): (&[i64; 2], &f64)| (*at, ACROSS.iter().filter_map(|by| joined(*at, by)).fold(*top, f64::max));
-        Self { part, top: highest.iter().map(closed).collect() }
+        let closed = |(at, top): (&[i64; 2], &f64)| {
+            let lower = ACROSS.iter().filter_map(|by| joined(*at, by)).fold(*top, f64::max);
+            (*at, if lower - top <= deepest { lower } else { *top })
+        };
+        Self { part, lower, top: highest.iter().map(closed).collect() }
     }
 
     /// m  the middle of a part
     fn middle(&self, at: [i64; 2]) -> [f64; 3] {
-        let [x, y] = [0, 1].map(|axis| (at[axis] as f64 + 0.5) * self.part[axis]);
+        let [x, y] = [0, 1].map(|axis| self.lower[axis] + (at[axis] as f64 + 0.5) * self.part[axis]);
         [x, y, self.top[&at]]
     }
 
@@ -88,9 +94,12 @@ impl Heights {
 
 /// Draws a picture for every frame of a solid, and returns their names; of a plane none.
 pub(super) fn draw(record: &RunRecord, frames: &[Frame]) -> Result<Vec<String>, Error> {
-    let cells = record.manifest.grid.as_ref().filter(|_| record.is_solid()).map(|grid| &grid.cell);
-    let Some(&[x, y, ..]) = cells.map(Vec::as_slice) else { return Ok(Vec::new()) };
-    let of = |frame: &Frame| Heights::of(frame, [x, y], section::above(record, frame));
+    let grid = record.manifest.grid.as_ref().filter(|_| record.is_solid());
+    let Some((&[from_x, from_y, ..], &[x, y, ..])) = grid.map(|grid| (&grid.lower[..], &grid.cell[..])) else {
+        return Ok(Vec::new());
+    };
+    let parts = ([from_x, from_y], [x, y]);
+    let of = |frame: &Frame| Heights::of(frame, parts, section::above(record, frame));
     let heights: Vec<Heights> = frames.iter().map(of).collect();
     let ends = range(heights.iter().flat_map(|of| of.top.values()).copied());
     let Some((low, high)) = ends else { return Ok(Vec::new()) };
@@ -144,7 +153,7 @@ mod tests {
         let row = |x: f64, z: f64| [[x, 0.5, z], [x, 0.5, z - 1.0]];
         let position = [row(0.5, 1.0), row(1.5, 3.0), row(2.5, 1.0)].concat();
         let frame = Frame { step: 0, time: 0.0, position, fields: Vec::new() };
-        let heights = Heights::of(&frame, [1.0, 1.0], 0.25);
+        let heights = Heights::of(&frame, ([0.0, 0.0], [1.0, 1.0]), 0.25);
         assert_eq!(heights.top.len(), 3);
         assert_eq!(heights.middle([1, 0]), [1.5, 0.5, 3.25]);
         assert_eq!((heights.slope([0, 0], 0), heights.slope([1, 0], 0), heights.slope([1, 0], 1)), (2.0, 0.0, 0.0));
@@ -153,10 +162,11 @@ mod tests {
     }
 
     #[test]
-    fn a_lower_point_between_others_is_no_pit_and_one_beside_them_is_lower() {
-        let position = vec![[0.5, 0.5, 2.0], [1.5, 0.5, 1.0], [2.5, 0.5, 3.0], [3.5, 0.5, 1.0]];
+    fn a_lower_point_between_others_is_no_pit_but_a_trench_stays_and_one_beside_them_is_lower() {
+        let position = [2.0, 1.0, 3.0, 1.0, 3.0, 1.0].into_iter().enumerate();
+        let position = position.map(|(k, z)| [k as f64 - 2.5, 0.5, z]).collect();
         let frame = Frame { step: 0, time: 0.0, position, fields: Vec::new() };
-        let heights = Heights::of(&frame, [1.0, 1.0], 0.0);
-        assert_eq!([0, 1, 2, 3].map(|x| heights.top[&[x, 0]]), [2.0, 2.0, 3.0, 1.0]);
+        let heights = Heights::of(&frame, ([-3.0, 0.0], [1.0, 1.0]), 0.0);
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|x| heights.top[&[x, 0]]), [2.0, 2.0, 3.0, 1.0, 3.0, 1.0]);
     }
 }

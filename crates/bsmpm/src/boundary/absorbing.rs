@@ -4,6 +4,7 @@
 use super::contact::face_cell;
 use super::{Boundary, Support};
 use crate::grid::{Grid, Shape, transfer};
+use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use crate::points::Points;
@@ -32,7 +33,7 @@ pub struct Dashpots(Vec<Dashpot>);
 impl Dashpots {
     /// Of the faces of the `boundary` that absorb, at components that are `free`; `impedance` of a point, kg m/s: its
     /// mass times the speed of compression and of shear waves. One exchange with the neighbours a face.
-    pub fn of<const D: usize>(
+    pub fn of<K: Kinematics<D>, const D: usize>(
         (boundary, grid): (&Boundary<D>, &Grid<D>),
         (shape, points): (&Shape<D>, &Points<D>),
         impedance: impl Fn(usize) -> [f64; 2] + Sync,
@@ -42,8 +43,14 @@ impl Dashpots {
         let mut dashpots = Vec::new();
         for (number, face) in boundary.absorbing().enumerate() {
             let (edge, last) = (face_cell(grid, face.axis, face.upper), face.last_cell(grid));
+            // A point's mass weighs by its own radius, what it tells of the face by the face's.
+            let weight = |x: &Vector<D>| {
+                let mut on_face = *x;
+                on_face[face.axis] = if face.upper { grid.axes()[face.axis].length() } else { 0.0 };
+                K::weight(&on_face) / K::weight(x)
+            };
             let at_face = |p: usize| match grid.locate(&points.x[p]) {
-                Some(cell) if cell[face.axis] == last => impedance(p).map(|of| of / edge),
+                Some(cell) if cell[face.axis] == last => impedance(p).map(|of| of / edge * weight(&points.x[p])),
                 _ => [0.0; 2],
             };
             let nodal = halo.sum(&transfer::to_nodes(shape, at_face));

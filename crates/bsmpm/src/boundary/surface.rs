@@ -39,6 +39,13 @@ impl<const D: usize> SurfacePoint<D> {
     pub fn at(x: Vector<D>, area: f64) -> Self {
         Self { x, area, corners: [x; CORNERS] }
     }
+
+    /// In the middle of a triangle, whose turn its corners have.
+    pub fn of_triangle([a, b, c]: [Vector<D>; 3]) -> Self {
+        let (along, across) = (b - a, c - a);
+        let square = along.norm_squared() * across.norm_squared() - along.dot(&across).powi(2);
+        Self { x: (a + b + c) / 3.0, area: 0.5 * square.max(0.0).sqrt(), corners: [a, b, c, c] }
+    }
 }
 
 /// Points in the middles of `count` equal pieces of every part of a straight segment that the grid's lines cut off;
@@ -97,29 +104,6 @@ fn corners<const D: usize>(middle: &Vector<D>, edges: &Vector<D>) -> [Vector<D>;
         (corners[1][axis], corners[3][axis]) = (b[axis], a[axis]);
     }
     corners
-}
-
-/// A triangle in pieces without a longer edge than this, m, at their middles; triangles that have an edge in common
-/// still have the edges of their pieces in common. Turns as the corners do.
-pub fn triangle<const D: usize>(corners: [Vector<D>; 3], longest: f64) -> Vec<SurfacePoint<D>> {
-    let mut pieces = Vec::new();
-    let mut whole = vec![corners];
-    while let Some([a, b, c]) = whole.pop() {
-        let edges = [(a, b, c), (b, c, a), (c, a, b)];
-        let length = |edge: &(Vector<D>, Vector<D>, Vector<D>)| (edge.1 - edge.0).norm();
-        let (a, b, c) =
-            edges.into_iter().fold(edges[0], |most, edge| if length(&edge) > length(&most) { edge } else { most });
-        if length(&(a, b, c)) > longest {
-            let middle = (a + b) * 0.5;
-            whole.extend([[a, middle, c], [middle, b, c]]);
-        } else {
-            let (along, across) = (b - a, c - a);
-            let square = along.norm_squared() * across.norm_squared() - along.dot(&across).powi(2);
-            let area = 0.5 * square.max(0.0).sqrt();
-            pieces.push(SurfacePoint { x: (a + b + c) / 3.0, area, corners: [a, b, c, c] });
-        }
-    }
-    pieces
 }
 
 /// The pieces of [`over`], and their edges, m.

@@ -127,7 +127,7 @@ impl<const D: usize> Nodes<D> {
         let dashpots = match model.boundary.absorbing().next() {
             Some(_) if model.regime == Regime::Dynamic => {
                 let impedance = |p: usize| model.impedance(points, p);
-                Dashpots::of((&model.boundary, &model.grid), (shape, points), impedance, &free, halo)
+                Dashpots::of::<K, D>((&model.boundary, &model.grid), (shape, points), impedance, &free, halo)
             }
             _ => Dashpots::default(),
         };

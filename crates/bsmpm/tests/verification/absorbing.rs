@@ -8,6 +8,7 @@ use bsmpm::initial;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain};
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Regime, Shaking};
+use bsmpm::points::Points;
 use bsmpm::tensor::{Symmetric, Vector};
 use std::f64::consts::PI;
 
@@ -75,6 +76,31 @@ fn plane_waves_of_either_kind_leave_through_any_face() {
     // Along the axis of a round bar, whose faces weigh by the radius.
     for (coarse, closure) in [left(newton, (40, 0)), left(pulsed::<Axisymmetric>(40, 1, 0), (40, 0))] {
         assert!(coarse < 1.1e-3 && closure.abs() < 1e-9, "{coarse:e}, {closure:e}");
+    }
+}
+
+/// A cylinder of 2 m that moves along its axis: its side takes ρ c R H v of the momentum of a radian.
+#[test]
+fn a_round_side_has_the_impedance_of_its_radius() {
+    for n in [2, 8] {
+        let h = 2.0 / n as f64;
+        let mut scene =
+            Scene::<Axisymmetric, 2>::new([axis(h, n, 2), axis(h, n, 2)], hencky(YOUNG, POISSON), Regime::Dynamic)
+                .body([0..n, 0..n], 2, RHO, |_| [0.0, 1e-3].into())
+                .support(Support::roller(0, false))
+                .support(Support::absorbing(0, true));
+        scene.model.criteria.force = 1e-9;
+        let momentum = |points: &Points<2>| -> f64 {
+            let v = &points.motion.as_ref().expect("dynamic").v;
+            points.mass.iter().zip(v).map(|(mass, v)| mass * v[1]).sum()
+        };
+        let (dt, mut seen) = (1e-7, Vec::new());
+        scene.march(dt, 3.0 * dt, |points, _| seen.push(momentum(points)));
+        // Not in the first step, which begins without a force.
+        let taken = (seen[1] - seen[2]) / dt;
+        let impedance = taken / (RHO * speed(1) * 2.0 * 2.0 * 1e-3);
+        // With a point's own radius in place of the face's 1 - h/(2 R).
+        assert!((impedance - 1.0).abs() < 1e-3, "{n} cells: {impedance}");
     }
 }
 

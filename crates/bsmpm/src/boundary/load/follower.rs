@@ -11,7 +11,7 @@
 use super::Load;
 use crate::boundary::anchor::Anchored;
 use crate::boundary::strip::reduce;
-use crate::boundary::surface::{Anchors, Attachment, CORNERS};
+use crate::boundary::surface::{Anchors, Attachment, CORNERS, SurfacePoint};
 use crate::grid::{Contributions, Grid};
 use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
@@ -84,9 +84,10 @@ impl<const D: usize> LoadCorners<D> {
     /// start, with the corners at these places; empty for the others.
     fn tractions<K: Kinematics<D>>(&self, loads: &[Load<D>], corners: &[Vector<D>]) -> Vec<Vec<Vector<D>>> {
         let mut pieces = self.of_piece.iter();
-        let mut traction = |traction: &Vector<D>| {
+        let mut traction = |(traction, point): (&Vector<D>, &SurfacePoint<D>)| {
             let Some(piece) = pieces.next() else { return *traction };
-            let start = area::<K, D>(piece.map(|corner| self.start[corner]));
+            // By its own corners, as the point's share is: a thin piece may have none of its own left.
+            let start = area::<K, D>(point.corners);
             let size = start.norm();
             // On an axis there is no area.
             if size == 0.0 {
@@ -95,7 +96,7 @@ impl<const D: usize> LoadCorners<D> {
             area::<K, D>(piece.map(|corner| corners[corner])) * (traction.dot(&start) / size.powi(2))
         };
         let of = |load: &Load<D>| match load.follows {
-            true => load.traction.iter().map(&mut traction).collect(),
+            true => load.traction.iter().zip(&load.points).map(&mut traction).collect(),
             false => Vec::new(),
         };
         loads.iter().map(of).collect()
