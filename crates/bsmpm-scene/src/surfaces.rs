@@ -156,10 +156,15 @@ fn on_line<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// Unit normal of a triangle, from which its corners turn counter-clockwise; 0 of one without area.
-pub(crate) fn normal_of([a, b, c]: &Triangle) -> [f64; 3] {
+/// m²  area of a triangle, a vector along the normal from which its corners turn counter-clockwise
+pub(crate) fn area_of([a, b, c]: &Triangle) -> Vector<3> {
     let [along, across] = [b, c].map(|end| Vector::<3>::from(*end) - Vector::from(*a));
-    along.cross(&across).try_normalize(0.0).unwrap_or_default().into()
+    along.cross(&across) * 0.5
+}
+
+/// Unit normal of a triangle, from which its corners turn counter-clockwise; 0 of one without area.
+pub(crate) fn normal_of(triangle: &Triangle) -> [f64; 3] {
+    area_of(triangle).try_normalize(0.0).unwrap_or_default().into()
 }
 
 /// The course of a load that begins at the time `since`, where nothing of it acts yet.

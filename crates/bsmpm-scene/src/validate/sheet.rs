@@ -7,6 +7,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::region::edges_of;
 use crate::report::Report;
+use crate::surfaces::{area_of, normal_of};
 use bsmpm::tensor::Vector;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -57,7 +58,7 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Vec<Triangle>> {
     let scale = table.number("scale")?;
     let corner = |row: &[f64], k: usize| [0, 1, 2].map(|axis| scale * row[3 * k + axis] + 0.0);
     let rows = table.rows("triangles")?.iter().map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
-    let all: Vec<Triangle> = rows.filter(|triangle| crate::surfaces::normal_of(triangle) != [0.0; 3]).collect();
+    let all: Vec<Triangle> = rows.filter(|triangle| normal_of(triangle) != [0.0; 3]).collect();
     if all.is_empty() {
         table.error("triangles", "there is none that has an area", report);
         return None;
@@ -71,9 +72,8 @@ pub(super) fn middle([a, b, c]: &Triangle) -> [f64; 3] {
 }
 
 /// m²
-fn area([a, b, c]: &Triangle) -> f64 {
-    let [along, across] = [b, c].map(|end| Vector::<3>::from(*end) - Vector::from(*a));
-    0.5 * along.cross(&across).norm()
+fn area(triangle: &Triangle) -> f64 {
+    area_of(triangle).norm()
 }
 
 /// A triangle in pieces without a longer edge than this, m, that turn as it does; those of triangles that have an edge
@@ -188,7 +188,7 @@ mod tests {
         let all = sphere_of([1.0, 2.0, 3.0], 0.5, 0.1);
         assert!(in_one_piece(&all).is_ok() && edges_of(&all).values().all(|sides| sides.len() == 2));
         let normals = all.iter().map(|triangle| {
-            let (at, normal) = (middle(triangle), crate::surfaces::normal_of(triangle));
+            let (at, normal) = (middle(triangle), normal_of(triangle));
             (at[0] - 1.0) * normal[0] + (at[1] - 2.0) * normal[1] + (at[2] - 3.0) * normal[2]
         });
         assert!(normals.into_iter().all(|outwards| (outwards - 0.5).abs() < 5e-3));
@@ -207,7 +207,7 @@ mod tests {
         let all = sphere_of(center, radius, 0.05).into_iter().flat_map(|of| inside(&grid, of));
         let all: Vec<Triangle> = all.collect();
         assert!(all.iter().flatten().all(|at| at[0] >= 0.0 && at[1] >= 0.0));
-        let along = |axis: usize| -> f64 { all.iter().map(|of| area(of) * crate::surfaces::normal_of(of)[axis]).sum() };
+        let along = |axis: usize| -> f64 { all.iter().map(|of| area(of) * normal_of(of)[axis]).sum() };
         // Of the disc on a face what lies beyond the other one, d from its middle.
         let rim = |off: f64, d: f64| {
             let square: f64 = radius * radius - off * off;

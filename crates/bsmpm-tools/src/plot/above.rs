@@ -55,8 +55,8 @@ impl Heights {
             Some(beside(-1)?.min(*beside(1)?))
         };
         let closed = |(at, top): (&[i64; 2], &f64)| {
-            let lower = ACROSS.iter().filter_map(|by| joined(*at, by)).fold(*top, f64::max);
-            (*at, if lower - top <= deepest { lower } else { *top })
+            let raised = ACROSS.iter().filter_map(|by| joined(*at, by)).fold(*top, f64::max);
+            (*at, if raised - top <= deepest { raised } else { *top })
         };
         Self { part, lower, top: highest.iter().map(closed).collect() }
     }

@@ -42,9 +42,18 @@ impl<const D: usize> SurfacePoint<D> {
 
     /// In the middle of a triangle, whose turn its corners have.
     pub fn of_triangle([a, b, c]: [Vector<D>; 3]) -> Self {
-        let (along, across) = (b - a, c - a);
-        let square = along.norm_squared() * across.norm_squared() - along.dot(&across).powi(2);
-        Self { x: (a + b + c) / 3.0, area: 0.5 * square.max(0.0).sqrt(), corners: [a, b, c, c] }
+        let corners = [a, b, c, c];
+        Self { x: (a + b + c) / 3.0, area: area(&corners).norm(), corners }
+    }
+}
+
+/// m^(D-1)  area of a piece, a vector along its normal: of a segment, or in space by its diagonals.
+pub(super) fn area<const D: usize>(corners: &[Vector<D>; CORNERS]) -> Vector<D> {
+    let [along, across] = [corners[2] - corners[0], corners[3] - corners[1]];
+    let cross = |i: usize, j: usize| 0.5 * (along[i] * across[j] - along[j] * across[i]);
+    match D {
+        2 => Vector::from_fn(|axis, _| if axis == 0 { -along[1] } else { along[0] }),
+        _ => Vector::from_fn(|axis, _| cross((axis + 1) % D, (axis + 2) % D)),
     }
 }
 

@@ -226,6 +226,6 @@ fn most_leaves<K: Kinematics<2>>(bounds: [f64; 4], least: f64) {
 fn of_a_source_at_a_point_most_leaves() {
     // 5.8, 1.7 %; right at a side and in a corner 23 %. Faces that are fixed: 77 % and more.
     most_leaves::<PlaneStrain>([0.07, 0.025, 0.26, 0.26], 0.7);
-    // 6.5, 4.5, 22, 17 %; fixed 32, 35, 105, 79 %.
+    // 6.2, 4.3, 21, 17 %; fixed 32, 35, 105, 79 %.
     most_leaves::<Axisymmetric>([0.07, 0.05, 0.25, 0.19], 0.3);
 }

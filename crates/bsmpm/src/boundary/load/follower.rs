@@ -11,7 +11,7 @@
 use super::Load;
 use crate::boundary::anchor::Anchored;
 use crate::boundary::strip::reduce;
-use crate::boundary::surface::{Anchors, Attachment, CORNERS, SurfacePoint};
+use crate::boundary::surface::{Anchors, Attachment, CORNERS, SurfacePoint, area};
 use crate::grid::{Contributions, Grid};
 use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
@@ -87,13 +87,13 @@ impl<const D: usize> LoadCorners<D> {
         let mut traction = |(traction, point): (&Vector<D>, &SurfacePoint<D>)| {
             let Some(piece) = pieces.next() else { return *traction };
             // By its own corners, as the point's share is: a thin piece may have none of its own left.
-            let start = area::<K, D>(point.corners);
+            let start = weighed::<K, D>(point.corners);
             let size = start.norm();
             // On an axis there is no area.
             if size == 0.0 {
                 return *traction;
             }
-            area::<K, D>(piece.map(|corner| corners[corner])) * (traction.dot(&start) / size.powi(2))
+            weighed::<K, D>(piece.map(|corner| corners[corner])) * (traction.dot(&start) / size.powi(2))
         };
         let of = |load: &Load<D>| match load.follows {
             true => load.traction.iter().zip(&load.points).map(&mut traction).collect(),
@@ -103,16 +103,9 @@ impl<const D: usize> LoadCorners<D> {
     }
 }
 
-/// Area of a piece, a vector along its normal: of a segment, or in space by its diagonals.
-fn area<K: Kinematics<D>, const D: usize>(corners: [Vector<D>; CORNERS]) -> Vector<D> {
-    let middle = corners.iter().sum::<Vector<D>>() / CORNERS as f64;
-    let [along, across] = [corners[2] - corners[0], corners[3] - corners[1]];
-    let cross = |i: usize, j: usize| 0.5 * (along[i] * across[j] - along[j] * across[i]);
-    let normal = match D {
-        2 => Vector::from_fn(|axis, _| if axis == 0 { -along[1] } else { along[0] }),
-        _ => Vector::from_fn(|axis, _| cross((axis + 1) % D, (axis + 2) % D)),
-    };
-    normal * K::weight(&middle)
+/// Area of a piece as it weighs, a vector along its normal.
+fn weighed<K: Kinematics<D>, const D: usize>(corners: [Vector<D>; CORNERS]) -> Vector<D> {
+    area(&corners) * K::weight(&(corners.iter().sum::<Vector<D>>() / CORNERS as f64))
 }
 
 /// A point of this rank that carries a piece.
