@@ -119,8 +119,9 @@ impl Context {
                 (None, Presence::Optional | Presence::Later) => {}
             }
         }
+        let mut told = Vec::new();
         for group in table.exclusive {
-            exclusive(group, written, &record, report);
+            exclusive(group, written, (&record, &mut told), report);
         }
         record
     }
@@ -228,9 +229,18 @@ fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-fn exclusive(group: &Group, written: &DocumentTable, record: &Record, report: &mut Report<'_>) {
+/// What is wrong with a group of keys; of two of which it was `told` by another group nothing.
+fn exclusive<'a>(
+    group: &Group,
+    written: &'a DocumentTable,
+    (record, told): (&Record, &mut Vec<[&'a str; 2]>),
+    report: &mut Report<'_>,
+) {
     let given: Vec<_> = group.keys.iter().filter_map(|key| written.get(key)).collect();
-    if let [first, second, ..] = given[..] {
+    if let [first, second, ..] = given[..]
+        && !told.contains(&[&first.key, &second.key])
+    {
+        told.push([&first.key, &second.key]);
         let message = format!("`{}` is given too; only one of {} may be", first.key, group.keys.join(", "));
         report.error(second.origin, &join(&record.path, &second.key), message);
     }
