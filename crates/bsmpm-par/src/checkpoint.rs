@@ -12,7 +12,9 @@ pub use read::{Opened, Wanted, find};
 pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};
 pub(crate) use sanity::require;
-pub use state::{BooksForm, CheckpointState, CrossedState, Files, FreeFieldState, Outlet, RecordState, Row};
+pub use state::{
+    BooksForm, CheckpointState, CrossedState, Files, FlowedState, FreeFieldState, Outlet, RecordState, Row,
+};
 pub(crate) use state::{rigid_numbers, rows};
 pub(crate) use write::room;
 pub use write::{Contents, write};

@@ -21,6 +21,7 @@ use bsmpm::parallel::Halo;
 use bsmpm::points::{Column, Points, Seed};
 use bsmpm::schedule::Schedule;
 use bsmpm::tensor::{Symmetric, Vector};
+use bsmpm::threads::Awake;
 use bsmpm::water::observed::PoreWater;
 use mpi::environment::Universe;
 use petsc_rs::Petsc;
@@ -178,6 +179,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             (self.timers.traffic().counts(), load::of_rank(self.points.len(), self.model.grid.nodes()));
         let outcome = {
             let _timed = self.timers.time("step");
+            let _awake = Awake::new();
             self.stepper.advance(&self.schedule, &self.model, &mut self.points, &*self.halo, &mut self.solver)?
         };
         if let Ok(accepted) = &outcome {
@@ -232,9 +234,15 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         }
         self.points.sort_by_cell(&self.model.grid);
         if numbers[..2] != [0.0; 2] {
-            self.stepper.begin_stage();
+            self.begin_afresh();
         }
         [numbers[0] as u64, numbers[1] as u64]
+    }
+
+    /// What acts at once moves ground and water as no step before it tells.
+    fn begin_afresh(&mut self) {
+        self.stepper.begin_stage();
+        self.points.forget_flow();
     }
 
     /// Gives the points from `first` on, which have been placed, their water, and enters it. Collective.
@@ -271,7 +279,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let next = Model { grid: self.model.grid.clone(), ..next };
         initial::exchange((&self.model, &next), &mut self.points, &*self.halo)?;
         self.model = next;
-        self.stepper.begin_stage();
+        self.begin_afresh();
         Ok(())
     }
 

@@ -118,6 +118,7 @@ impl<const D: usize> Boundary<D> {
             held: Vec::new(),
             bodies: self.rigid.iter().map(RigidBody::at_rest).collect(),
             crossed: Crossed::default(),
+            flowed: None,
         }
     }
 

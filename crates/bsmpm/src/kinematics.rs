@@ -12,7 +12,6 @@ pub use solid::Solid;
 
 use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
-use crate::threads::Blank;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, MulAssign, Sub, SubAssign};
@@ -109,7 +108,6 @@ pub trait Gradient<const D: usize>:
     + SubAssign
     + Mul<f64, Output = Self>
     + MulAssign<f64>
-    + Blank
 {
     /// G
     const SLOPES: usize;

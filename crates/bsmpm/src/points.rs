@@ -172,6 +172,11 @@ columns! {
         /// Pa/m  gradient of the whole pore pressure, where water flows, from the first step on; before that it is that
         ///   of the still water
         pressure_gradient: Vec<Vector<D>>, "Pa/m", None, || Vector::zeros();
+        /// -  water per reference volume that came in the last step, where water flows that goes on as it did, from the
+        ///   first step on; before that it is 0
+        content_change: Vec<f64>, "-", None, || 0.0;
+        /// Pa/m  what the gradient of the whole pore pressure changed by then
+        gradient_change: Vec<Vector<D>>, "Pa/m", None, || Vector::zeros();
         /// Pa  pore pressure as a share of the weight above at the start, under the full gravity, where some material
         ///   has one; of points that come later it is 0
         carried_pressure: Vec<f64>, "Pa", None, || 0.0;
@@ -241,6 +246,11 @@ impl<const D: usize> Points<D> {
         if stay.len() < self.len() {
             self.columns().into_iter().for_each(|column| column.reorder(&stay));
         }
+    }
+
+    /// What flowed in the last step tells nothing of the next one: the ground has changed, or what acts on it.
+    pub fn forget_flow(&mut self) {
+        (self.content_change, self.gradient_change, self.surface.flowed) = (None, None, None);
     }
 
     /// Displacements count from here.

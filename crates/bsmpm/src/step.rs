@@ -32,6 +32,7 @@ use crate::model::{Model, Regime};
 use crate::parallel::{Halo, LinearSolver, agreed};
 use crate::points::Points;
 use crate::solve;
+use crate::water::backward::{Flowed, is_smooth};
 use commit::Committed;
 use newmark::Newmark;
 use nodes::Nodes;
@@ -101,7 +102,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     free_field.settle(&mut surface.held);
     if let Some(water) = &mut report.water {
         water.stored = content;
-        surface.crossed.add(&water.crossed);
+        surface.crossed.add(1.0, &water.crossed);
+        let flowed = || Flowed { dt, crossed: water.crossed.clone(), left: water.left };
+        surface.flowed = is_smooth(model).then(flowed);
     }
     points.surface = surface;
     points.free_field = free_field.columns;

@@ -2,11 +2,13 @@
 //! of the points, sums are exact, and a largest value has no order.
 
 use crate::exact::Exact;
-use crate::tensor::Symmetric;
-use nalgebra::SMatrix;
+use rayon::Yield;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, Mutex};
+use std::thread;
 
 /// Points of a chunk: enough that handing it out costs nothing, few enough that threads end together.
 pub(crate) const CHUNK: usize = 1024;
@@ -87,50 +89,32 @@ pub fn change<T: Send>(rows: &mut [T], width: usize, change: impl Fn(usize, &mut
     });
 }
 
-/// A value that stands in a place until a thread has put its own there.
-pub trait Blank: Clone + Send {
-    /// It.
-    fn blank() -> Self;
-}
+/// As long as it lives, the other threads stay awake: one that has gone to sleep comes late to the next pass, and a step
+/// has many short ones.
+pub struct Awake(Arc<AtomicBool>);
 
-impl Blank for f64 {
-    fn blank() -> Self {
-        0.0
+impl Awake {
+    /// From here on.
+    #[allow(clippy::new_without_default)]
+    pub fn new() -> Self {
+        let is_over = Arc::new(AtomicBool::new(false));
+        if rayon::current_num_threads() > 1 {
+            let is_over = Arc::clone(&is_over);
+            rayon::spawn_broadcast(move |thread| {
+                // The first one is that of the rank, which has work of its own.
+                while thread.index() > 0 && !is_over.load(Relaxed) {
+                    if rayon::yield_now() != Some(Yield::Executed) {
+                        thread::yield_now();
+                    }
+                }
+            });
+        }
+        Self(is_over)
     }
 }
 
-impl<const R: usize, const C: usize> Blank for SMatrix<f64, R, C> {
-    fn blank() -> Self {
-        Self::zeros()
-    }
-}
-
-impl Blank for Symmetric {
-    fn blank() -> Self {
-        Self::default()
-    }
-}
-
-impl<const N: usize> Blank for [f64; N] {
-    fn blank() -> Self {
-        [0.0; N]
-    }
-}
-
-impl<T: Clone + Send> Blank for Option<T> {
-    fn blank() -> Self {
-        None
-    }
-}
-
-impl<A: Blank, B: Blank> Blank for (A, B) {
-    fn blank() -> Self {
-        (A::blank(), B::blank())
-    }
-}
-
-impl<A: Blank, B: Blank, C: Blank> Blank for (A, B, C) {
-    fn blank() -> Self {
-        (A::blank(), B::blank(), C::blank())
+impl Drop for Awake {
+    fn drop(&mut self) {
+        self.0.store(true, Relaxed);
     }
 }

@@ -6,6 +6,7 @@
 #![doc = include_str!("water.md")]
 
 pub mod ambient;
+pub mod backward;
 pub mod carried;
 pub mod content;
 pub mod crossed;

@@ -10,6 +10,7 @@ use bsmpm::control::Progress;
 use bsmpm::energy::{Books, Budget, Flows};
 use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
+use bsmpm::water::backward::Flowed;
 use bsmpm::water::crossed::Crossed;
 use bsmpm_io::exit;
 use bsmpm_io::frames::Entry;
@@ -62,6 +63,9 @@ pub struct CheckpointState {
     /// Water that has gone through drains and inflows.
     #[serde(default, skip_serializing_if = "CrossedState::is_none")]
     pub crossed: CrossedState,
+    /// What flowed in the last step; none of a run in which the next step does not go on with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flowed: Option<FlowedState>,
     /// N  of every node of every absorbing face what holds the state of the start; none of a run without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub held: Vec<Vec<Row>>,
@@ -85,6 +89,25 @@ pub struct CheckpointState {
     pub last_frame: Option<u64>,
     /// The files.
     pub files: Files,
+}
+
+/// The last step's flow: its length in s, what crossed surfaces in it, and what it left out of balance, m3 per metre.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FlowedState {
+    dt: f64,
+    crossed: CrossedState,
+    left: f64,
+}
+
+impl FlowedState {
+    pub(crate) fn of(Flowed { dt, crossed, left }: &Flowed) -> Self {
+        Self { dt: *dt, crossed: CrossedState::of(crossed), left: *left }
+    }
+
+    fn flow(&self) -> Flowed {
+        Flowed { dt: self.dt, crossed: self.crossed.volumes(), left: self.left }
+    }
 }
 
 /// Water that has gone through surfaces of the ground, m3 per metre; nothing of a run without any.
@@ -244,6 +267,7 @@ impl CheckpointState {
             held: vectors(&self.held)?,
             bodies: self.rigid.iter().map(rigid_state).collect(),
             crossed: self.crossed.volumes(),
+            flowed: self.flowed.as_ref().map(FlowedState::flow),
         })
     }
 }

@@ -1,7 +1,9 @@
 //! Checkpoints and frames of the last converged state: when they are due, and what is in them.
 
 use super::Run;
-use crate::checkpoint::{self, CheckpointState, Contents, CrossedState, FreeFieldState, Refusal, rigid_numbers, rows};
+use crate::checkpoint::{
+    self, CheckpointState, Contents, CrossedState, FlowedState, FreeFieldState, Refusal, rigid_numbers, rows,
+};
 use crate::launch;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
@@ -153,6 +155,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             anchors: [surface.anchors.strips.clone(), surface.anchors.loads.clone()],
             water_anchors: surface.anchors.water.clone(),
             crossed: CrossedState::of(&surface.crossed),
+            flowed: surface.flowed.as_ref().map(FlowedState::of),
             position: rows(&surface.position),
             held: rows(&surface.held),
             free_field: simulation.points.free_field.iter().map(FreeFieldState::of).collect(),

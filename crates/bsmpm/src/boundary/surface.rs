@@ -8,6 +8,7 @@ use crate::grid::{Contributions, Grid, KnotVector};
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
+use crate::water::backward::Flowed;
 use crate::water::crossed::Crossed;
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
@@ -232,6 +233,8 @@ pub struct Surface<const D: usize> {
     pub bodies: Vec<RigidState>,
     /// water that has gone through drains and inflows since the start
     pub crossed: Crossed,
+    /// what flowed in the last step, where the next one goes on with it
+    pub flowed: Option<Flowed>,
 }
 
 /// Ids of the points that the points of all surfaces are anchored to; the same on every rank, and empty before the

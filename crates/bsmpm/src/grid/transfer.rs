@@ -4,7 +4,6 @@
 //! in a block before it is added to its column's [`Contributions`]: sums over points have one order, whatever the
 //! number of ranks and threads. Threads share the columns of cells. Nodal arrays are flat.
 
-mod columns;
 mod patch;
 pub mod scalars;
 
@@ -14,11 +13,12 @@ use crate::kinematics::{Kinematics, Slope};
 use crate::lanes;
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
-use crate::threads::{self, Blank, share};
-use columns::{apart, nothing, places};
+use crate::threads::{CHUNK, share};
 use patch::{Divergence, Gradients, PatchSums};
+use rayon::prelude::*;
 use std::marker::PhantomData;
 use std::ops::Range;
+use std::sync::Mutex;
 
 /// Largest number of nodes of a patch: (3 + 1)^3.
 const MOST_NODES: usize = 64;
@@ -81,7 +81,7 @@ pub fn largest_to_nodes<const D: usize>(
 }
 
 /// Gather with shape functions: what `found` makes of value_p = sum_I N_Ip nodal_I (Eq. 1), for every point.
-pub fn to_points<const D: usize, const C: usize, T: Blank>(
+pub fn to_points<const D: usize, const C: usize, T: Clone + Send>(
     shape: &Shape<D>,
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
@@ -90,7 +90,7 @@ pub fn to_points<const D: usize, const C: usize, T: Blank>(
 }
 
 /// [`to_points`] from the nodal values of each point's group.
-pub fn to_points_grouped<const D: usize, const C: usize, T: Blank>(
+pub fn to_points_grouped<const D: usize, const C: usize, T: Clone + Send>(
     shape: &Shape<D>,
     grouped: Grouped<'_>,
     nodal: &[f64],
@@ -117,7 +117,7 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Blank>(
 
 /// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point; the
 /// points are at `x`, m.
-pub fn gradients<K: Kinematics<D>, const D: usize, T: Blank>(
+pub fn gradients<K: Kinematics<D>, const D: usize, T: Clone + Send>(
     (shape, x): (&Shape<D>, &[Vector<D>]),
     u: &[f64],
     found: impl Fn(usize, K::Gradient) -> T + Sync,
@@ -224,7 +224,7 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
 }
 
 /// What the patches leave at their points, in the order of the points.
-fn at_points<const D: usize, S, T: Blank>(
+fn at_points<const D: usize, S, T: Clone + Send>(
     shape: &Shape<D>,
     scratch: impl Fn() -> S + Sync,
     work: impl Fn(usize, &mut S, &mut Vec<T>) + Sync,
@@ -234,21 +234,30 @@ fn at_points<const D: usize, S, T: Blank>(
         (0..shape.patches().len()).for_each(|patch| work(patch, &mut scratch, &mut out));
         return out;
     }
-    let mut out = threads::each(shape.len(), |_| T::blank());
-    let columns = places(shape, &mut out);
-    share(columns.len(), &|index| {
-        let mut places = &mut **columns[index].lock().expect("the column's only thread");
-        let (mut scratch, mut found) = (scratch(), Vec::new());
-        for patch in shape.columns()[index].patches.clone() {
+    let patches = shape.patches();
+    let begin = || (scratch(), 0..0, Vec::new());
+    // A thread that begins within a patch works it out from its first point.
+    let of_point = |(scratch, points, found): &mut (S, Range<usize>, Vec<T>), p: usize| {
+        if !points.contains(&p) {
+            let number = patches.partition_point(|patch| patch.points.end <= p);
             found.clear();
-            work(patch, &mut scratch, &mut found);
-            let (of_patch, others) = places.split_at_mut(found.len());
-            of_patch.iter_mut().zip(found.drain(..)).for_each(|(place, value)| *place = value);
-            places = others;
+            work(number, scratch, found);
+            points.clone_from(&patches[number].points);
         }
-    });
-    drop(columns);
-    out
+        found[p - points.start].clone()
+    };
+    (0..shape.len()).into_par_iter().with_min_len(CHUNK).map_init(begin, of_point).collect()
+}
+
+/// Contributions of no point yet, `width` numbers a node and level.
+fn nothing<const D: usize>(shape: &Shape<D>, width: usize) -> Contributions {
+    let columns = shape.columns().iter().map(|column| column.column).collect();
+    Contributions::zeros(shape.extent(), width * shape.levels(), columns)
+}
+
+/// The sums of every column, for a thread of its own.
+fn apart(contributions: &mut Contributions) -> Vec<Mutex<&mut [f64]>> {
+    contributions.columns_mut().map(Mutex::new).collect()
 }
 
 /// Fills a block with the numbers of a patch's nodes, or of its functions where these are merged.

@@ -5,9 +5,12 @@
 //! dw_i . K_0 dw_j are dw_i . df_j, and dw_i . K_0 w are df_i . w, which need no product with K_0 and no dw but the
 //! newest. On a linear problem that is as good as GMRES, where Broyden's update may take twice the iterations.
 
+use crate::exact::Exact;
 use crate::parallel::Halo;
 use crate::solve::unknowns::Unknowns;
+use crate::threads::{self, CHUNK};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use rayon::prelude::*;
 
 /// Secants that are kept: older ones tell little of a plastic state that has changed.
 const MOST: usize = 20;
@@ -47,11 +50,14 @@ impl Multisecant {
         let (w, f) = (self.unknowns.packed(nodal_w), self.unknowns.packed(f));
         let dw = self.learn(&w, &f);
         let Products { right, both, mut energy } = self.products((&w, &f), dw.as_deref(), halo);
+        let weights = least_squares(&self.products, &right);
+        weights.iter().zip(both).for_each(|(weight, both)| energy -= weight * both);
         let mut du = w.clone();
-        for ((weight, secant), both) in least_squares(&self.products, &right).into_iter().zip(&self.secants).zip(both) {
-            du.iter_mut().zip(&secant.both).for_each(|(du, both)| *du -= weight * both);
-            energy -= weight * both;
-        }
+        du.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, du)| {
+            for (weight, secant) in weights.iter().zip(&self.secants) {
+                du.iter_mut().zip(&secant.both[chunk * CHUNK..]).for_each(|(du, both)| *du -= weight * both);
+            }
+        });
         self.unknowns.unpack(&du, nodal_w);
         self.last = Some(Last { s: du, w, f });
         energy
@@ -86,11 +92,12 @@ impl Multisecant {
     fn products(&mut self, (w, f): (&[f64], &[f64]), dw: Option<&[f64]>, halo: &dyn Halo) -> Products {
         let Self { unknowns, secants, .. } = self;
         let count = secants.len();
-        let mut sums = Vec::with_capacity(3 * count + 1);
-        for secant in secants.iter() {
-            sums.extend(unknowns.dots([dw.unwrap_or_default(), w], &secant.df));
-            sums.extend(unknowns.dots([f], &secant.both));
-        }
+        let of_secant = |k: usize| {
+            let [own, right] = unknowns.dots([dw.unwrap_or_default(), w], &secants[k].df);
+            let [both] = unknowns.dots([f], &secants[k].both);
+            [own, right, both]
+        };
+        let mut sums: Vec<Exact> = threads::each(count, of_secant).into_iter().flatten().collect();
         sums.extend(unknowns.dots([w], f));
         let sums = halo.total(&sums);
         let every_third = |from: usize| sums[..3 * count].iter().skip(from).step_by(3).copied().collect();

@@ -18,7 +18,6 @@ use crate::step::apart::Apart;
 use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
 use crate::tensor::Vector;
-use crate::threads::Blank;
 use crate::water::carried;
 use crate::water::nodes::Pores;
 
@@ -206,7 +205,7 @@ impl<const D: usize> Nodes<D> {
 
     /// What `found` makes of S(a)_p = sum_I N_Ip a_I, for every point: a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17),
     /// zero at massless nodes, both sums over the points of one group of materials.
-    pub fn average<K, const C: usize, T: Blank>(
+    pub fn average<K, const C: usize, T: Clone + Send>(
         &self,
         model: &Model<K, D>,
         (shape, points): (&Shape<D>, &Points<D>),
@@ -257,7 +256,7 @@ impl<const D: usize> Nodes<D> {
     }
 
     /// With functions `shape` and their weights; zero where these are at most the threshold.
-    fn average_with<K, const C: usize, T: Blank>(
+    fn average_with<K, const C: usize, T: Clone + Send>(
         &self,
         model: &Model<K, D>,
         (shape, weight): (&Shape<D>, &[f64]),

@@ -15,14 +15,14 @@ pub struct Crossed {
 }
 
 impl Crossed {
-    /// Adds what has gone through since.
-    pub fn add(&mut self, more: &Self) {
+    /// Adds `times` as much as has gone through since.
+    pub fn add(&mut self, times: f64, more: &Self) {
         let lists = [&mut self.drains, &mut self.faces, &mut self.inflows];
         for (sums, more) in lists.into_iter().zip([&more.drains, &more.faces, &more.inflows]) {
-            sums.resize(more.len(), 0.0);
-            sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+            sums.resize(sums.len().max(more.len()), 0.0);
+            sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += times * more);
         }
-        self.removed += more.removed;
+        self.removed += times * more.removed;
     }
 
     /// What has left the ground through its surface, or what has come in, whichever is more.

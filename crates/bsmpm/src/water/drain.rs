@@ -49,14 +49,14 @@ pub struct Drainage {
 struct WaterCrossing {
     surface: usize, // of the drains, then of the inflows
     attachment: Attachment,
-    conductance: f64, // m3/Pa  in the step
+    conductance: f64, // m3/Pa  in that time
     given: f64,       // Pa  excess
-    inflow: f64,      // m3  in the step
+    inflow: f64,      // m3  in that time
     one_way: bool,    // lets water out only, where the pressure is above the given one
 }
 
 impl WaterCrossing {
-    /// m3  out of the ground in the step, under the excess pressures `p`, Pa, nodal.
+    /// m3  out of the ground in that time, under the excess pressures `p`, Pa, nodal.
     fn out(&self, offsets: &[usize], p: &[f64]) -> f64 {
         if !self.is_open(offsets, p) {
             return -self.inflow;
@@ -71,13 +71,13 @@ impl WaterCrossing {
 }
 
 impl Drainage {
-    /// Of the step from `t` to `t + dt` and the points at `t`; by the functions of degree q - 1 that `counts` says.
-    /// `still` is the pressure of the still water at `t + dt`, Pa. One reduction, before the first step three. Fails on
+    /// Of a step with that `end` and the points at its start, whose flows count for `duration`, s; by the functions of
+    /// degree q - 1 that `counts` says. `still` is the pressure of the still water at the end, Pa. One reduction, before the first step three. Fails on
     /// all ranks where a surface is on material that lets no water through.
     pub fn at<K, const D: usize>(
         model: &Model<K, D>,
         points: &Points<D>,
-        (t, dt): (f64, f64),
+        (end, duration): (f64, f64),
         counts: impl Fn(usize) -> bool,
         still: impl Fn(&Vector<D>) -> f64,
         halo: &dyn Halo,
@@ -106,20 +106,20 @@ impl Drainage {
             for (place, SurfacePoint { area, .. }) in here.iter().zip(starts) {
                 let attachment = Attachment::lowered_at(grid, &offsets, &counts, &place.x);
                 let Some(attachment) = attachment else { continue };
-                let through = dt * area * place.normal.norm();
+                let through = duration * area * place.normal.norm();
                 let none =
                     WaterCrossing { surface, attachment, conductance: 0.0, given: 0.0, inflow: 0.0, one_way: false };
                 let conductance = through * CONDUCTANCE * place.leads(grid) / water.unit_weight;
-                let dry = Given::Seepage.excess(water.unit_weight, &place.x, t + dt, &still);
+                let dry = Given::Seepage.excess(water.unit_weight, &place.x, end, &still);
                 outlets.push(match flow.drains.get(surface) {
                     Some(drain) => {
-                        let given = drain.given.excess(water.unit_weight, &place.x, t + dt, &still);
+                        let given = drain.given.excess(water.unit_weight, &place.x, end, &still);
                         let one_way = drain.given == Given::Seepage && still(&place.x) <= 0.0;
                         WaterCrossing { conductance, given, one_way, ..none }
                     }
                     None => {
                         let inflow = &flow.inflows[surface - flow.drains.len()];
-                        let rain = WaterCrossing { inflow: through * inflow.rate.at(t + dt), ..none };
+                        let rain = WaterCrossing { inflow: through * inflow.rate.at(end), ..none };
                         if inflow.runs_off {
                             WaterCrossing { conductance, given: dry, one_way: true, ..rain }
                         } else {

@@ -73,7 +73,7 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
             let Some((change, wet)) = self.points[p].as_ref().zip(pores.wet[p].as_ref()) else { return [none] };
             let l = K::gradient::<f64>(&grad[p]) * change.inverse;
             let Changed { stored, flux } =
-                change.of((&l, averaged.map_or(0.0, |rate| rate[p])), pressures[p], (wet, pores.dt));
+                change.of((&l, averaged.map_or(0.0, |rate| rate[p])), pressures[p], (wet, pores.duration));
             [(stored, flux)]
         });
         pores.drainage.add_changes(self.p, v, &mut sums);
@@ -132,7 +132,7 @@ impl<const D: usize> Change<D> {
         &self,
         (l, averaged): (&Tensor, f64),
         (pressure, gradient): (f64, Vector<D>),
-        (wet, dt): (&Wet<D>, f64),
+        (wet, duration): (&Wet<D>, f64),
     ) -> Changed<D> {
         let trace = l.trace();
         let turned = |along: &Vector<D>| -> Vector<D> {
@@ -145,6 +145,6 @@ impl<const D: usize> Change<D> {
         let flux = Vector::from_fn(|i, _| self.J * (0..D).map(|j| self.inverse[(i, j)] * w[j]).sum::<f64>());
         let stored = wet.volume * (self.stored.0 * trace + self.stored.1 * pressure);
         let tau = self.tau.0.component_mul(&gradient) + self.tau.1 * pressure;
-        Changed { stored, flux: tau - flux * (dt * wet.volume) }
+        Changed { stored, flux: tau - flux * (duration * wet.volume) }
     }
 }

@@ -52,7 +52,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
                 conductivity *= retained.permeability;
                 tau *= wet.lumped(soil, chord);
             }
-            let along = tau + conductivity * (pores.dt * wet.volume * wet.J / water.unit_weight);
+            let along = tau + conductivity * (pores.duration * wet.volume * wet.J / water.unit_weight);
             for (row, (A, gradient)) in block.chunks_exact_mut(size).zip(&functions) {
                 let (A, gradient) = (A * stored, gradient.component_mul(&along));
                 row.iter_mut().zip(&functions).for_each(|(entry, (B, other))| *entry += A * B + gradient.dot(other));

@@ -9,6 +9,7 @@ use crate::parallel::{Halo, over_layers};
 use crate::points::Points;
 use crate::tensor::Vector;
 use crate::water::Water;
+use crate::water::backward::Differences;
 use crate::water::drain::Drainage;
 use crate::water::flow::{Flow, Motion, Soil};
 use crate::water::ties::Ties;
@@ -34,6 +35,8 @@ pub struct Wet<const D: usize> {
     pub mean_J: f64,
     /// -  water per reference volume at t
     pub content: f64,
+    /// -  as much as comes in because it came in before, see [`Differences`]
+    pub goes_on: f64,
     /// Pa  whole pore pressure at t; of pores that stay full the excess alone
     pub pressure: f64,
     /// Pa  still water at t + dt, which with the excess is the whole pressure; 0 where all pores stay full
@@ -44,7 +47,7 @@ pub struct Wet<const D: usize> {
     pub stiffness: f64,
     /// m^D m2/Pa  V0 J tau h_i^2/M along the axes
     pub tau: Vector<D>,
-    /// Pa/m  gradient of the whole pore pressure at t
+    /// Pa/m  gradient of the whole pore pressure at t, and as much of it as goes on
     pub before: Vector<D>,
     /// Pa/m  of the still water at t + dt
     pub still: Vector<D>,
@@ -73,9 +76,11 @@ pub struct Pores<const D: usize> {
     pub drainage: Drainage,
     /// across lines where strains may jump
     pub ties: Ties,
-    /// s  length of the step, and its end
-    pub dt: f64,
-    /// s
+    /// the step's differences in time
+    pub differences: Differences,
+    /// s  for which flows at the end of the step count
+    pub duration: f64,
+    /// s  end of the step
     pub end: f64,
     /// unknowns, over all ranks
     pub unknowns: usize,
@@ -99,12 +104,15 @@ impl<const D: usize> Pores<D> {
             return Ok(None);
         }
         let (shape, end) = (full.lowered_with_derivatives(&model.grid, points), t + dt);
-        let wet: Vec<Option<Wet<D>>> =
-            (0..points.len()).map(|p| Wet::of(model, (water, flow), points, p, (t, end))).collect();
+        let differences = Differences::of(model, points, dt);
+        let duration = differences.now * dt;
+        let of_point = |p: usize| Wet::of(model, (water, flow), (points, p), (t, end), differences.last);
+        let wet: Vec<Option<Wet<D>>> = (0..points.len()).map(of_point).collect();
         let pressure = points.pore_pressure.as_ref();
         let sums = halo.sum(&scalars::of_scalars(&shape, |p| {
             let volume = wet[p].as_ref().map_or(0.0, |wet| wet.volume);
-            let takes = wet[p].as_ref().map_or(0.0, |wet| wet.takes(model, (water, flow), points.material[p], dt));
+            let takes =
+                wet[p].as_ref().map_or(0.0, |wet| wet.takes(model, (water, flow), points.material[p], duration));
             let values = [
                 volume,
                 volume * pressure.map_or_else(|| water.excess_at_start(&points.x[p]), |pressure| pressure[p]),
@@ -132,7 +140,7 @@ impl<const D: usize> Pores<D> {
             still(&Vector::from_fn(|axis, _| place(axis)))
         });
         let at_nodes = at_nodes.collect();
-        let drainage = Drainage::at(model, points, (t, dt), |node| seen[node], still, halo)?;
+        let drainage = Drainage::at(model, points, (end, duration), |node| seen[node], still, halo)?;
         let takes: Vec<f64> = sums.chunks_exact(SUMS).map(|of| of[2]).collect();
         let ties = Ties::of(&model.grid, &seen, &takes);
         let limit = |node: usize| if free[node] { (ROUND_OFF * sums[SUMS * node]).powi(2) } else { 0.0 };
@@ -150,7 +158,8 @@ impl<const D: usize> Pores<D> {
             wet,
             drainage,
             ties,
-            dt,
+            differences,
+            duration,
             end,
             unknowns,
             round_off,
@@ -162,9 +171,9 @@ impl<const D: usize> Wet<D> {
     fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
         (water, flow): (&Water<D>, &Flow<D>),
-        points: &Points<D>,
-        p: usize,
+        (points, p): (&Points<D>, usize),
         (t, end): (f64, f64),
+        last: f64,
     ) -> Option<Self> {
         let material = usize::from(points.material[p]);
         let soil = flow.soils[material].as_ref()?;
@@ -183,12 +192,14 @@ impl<const D: usize> Wet<D> {
             J,
             mean_J: J * points.dilation_of(p),
             content: soil.content(flow.bulk, J, whole) * retained.saturation,
+            goes_on: points.content_change.as_ref().map_or(0.0, |change| last * change[p]),
             pressure: whole,
             ambient: if holds { water.still_pressure(x, end) } else { 0.0 },
             borne: model.still_water(end).filter(|_| holds).map_or(0.0, |still| still.pressure(x)),
             stiffness,
             tau: edges.component_mul(&edges) * (volume * J * TAU / stiffness),
-            before: points.pressure_gradient.as_ref().map_or_else(|| water.still_gradient(x, t), |before| before[p]),
+            before: points.pressure_gradient.as_ref().map_or_else(|| water.still_gradient(x, t), |before| before[p])
+                + points.gradient_change.as_ref().map_or_else(Vector::zeros, |change| change[p] * last),
             still,
             drive: (still - water.weight(model, end)) * flows,
         })
@@ -211,10 +222,10 @@ impl<const D: usize> Wet<D> {
         self.stiffness / self.J * soil.pores(self.mean_J)
     }
 
-    /// m3/Pa  what the point stores and lets flow through a cell in a step, per pressure.
-    fn takes<K>(&self, model: &Model<K, D>, (water, flow): (&Water<D>, &Flow<D>), material: u16, dt: f64) -> f64 {
+    /// m3/Pa  what the point stores and lets flow through a cell in `duration`, s, per pressure.
+    fn takes<K>(&self, model: &Model<K, D>, (water, flow): (&Water<D>, &Flow<D>), material: u16, duration: f64) -> f64 {
         let conductivity = flow.permeability(material, self.mean_J).unwrap_or_else(Vector::zeros);
-        let flows = dt * conductivity.max() / (water.unit_weight * model.grid.smallest_edge().powi(2));
+        let flows = duration * conductivity.max() / (water.unit_weight * model.grid.smallest_edge().powi(2));
         self.volume * (self.content / flow.bulk + self.J.powi(2) / self.stiffness + self.J * flows)
     }
 }

@@ -61,9 +61,9 @@ impl WaterBalance {
             if state.pores.is_nan() || state.pores <= 0.0 {
                 closed.fetch_add(1, Relaxed);
             }
-            let stored = wet.volume * (state.content - wet.content);
+            let stored = wet.volume * (state.content - wet.content - wet.goes_on);
             let tau = wet.tau_of(gradient) * state.lumped;
-            [(stored, zero), (0.0, state.flux * -(pores.dt * wet.volume)), (0.0, tau), (0.0, zero)]
+            [(stored, zero), (0.0, state.flux * -(pores.duration * wet.volume)), (0.0, tau), (0.0, zero)]
         });
         pores.drainage.add_to(p, &mut sums);
         trial.pore = Some(of_points(problem, pores, trial, &pressures));

@@ -10,6 +10,7 @@ use crate::solve::found::Found;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
 use crate::tensor::Vector;
+use crate::water::backward::is_smooth;
 use crate::water::crossed::Crossed;
 use crate::water::flow::{DrainedFace, Flow};
 use crate::water::nodes::{Pores, face_functions};
@@ -37,7 +38,7 @@ pub struct FaceReport {
 pub struct WaterReport {
     /// m3  that the points took in: what they hold now less what they held before
     pub stored: f64,
-    /// m3  that crossed the surface of the ground
+    /// m3  that crossed the surface of the ground, of second order with what goes on of the step before
     pub crossed: Crossed,
     /// points of every drain with material near, then of every inflow
     pub held: Vec<usize>,
@@ -76,10 +77,15 @@ impl WaterReport {
         let held = drains.iter().chain(&inflows).map(|report| report.held).collect();
         let through =
             |reports: &[crate::water::drain::DrainReport]| reports.iter().map(|report| report.through).collect();
-        let crossed = Crossed { drains: through(&drains), faces, inflows: through(&inflows), removed: 0.0 };
+        let mut crossed = Crossed { drains: through(&drains), faces, inflows: through(&inflows), removed: 0.0 };
+        let (mut left, last) = (water.left, pores.differences.last);
+        if let Some(flowed) = &problem.points.surface.flowed {
+            crossed.add(last, &flowed.crossed);
+            left += last * flowed.left;
+        }
         let measure = water.measure(pores.round_off);
         let (torn, faces) = (pores.drainage.torn.clone(), at_faces(problem, pores, flow));
-        Some(Self { stored: 0.0, crossed, held, torn, faces, left: water.left, measure, unknowns: pores.unknowns })
+        Some(Self { stored: 0.0, crossed, held, torn, faces, left, measure, unknowns: pores.unknowns })
     }
 }
 
@@ -135,6 +141,9 @@ pub fn save<K: Kinematics<D>, const D: usize>(
     let density = water.density(model);
     let holds = water.flow.as_ref().is_some_and(|flow| flow.retains());
     let (mut pressures, mut gradients) = (vec![0.0; states.len()], vec![Vector::zeros(); states.len()]);
+    let lets_through =
+        |material: u16| water.flow.as_ref().is_some_and(|flow| flow.permeability(material, 1.0).is_some());
+    let mut goes_on = is_smooth(model).then(|| (vec![0.0; states.len()], gradients.clone()));
     let mut stored = Vec::with_capacity(states.len());
     for (p, (state, wet)) in states.iter().zip(&pores.wet).enumerate() {
         let (Some((pressure, state)), Some(wet)) = (state, wet) else { continue };
@@ -144,6 +153,11 @@ pub fn save<K: Kinematics<D>, const D: usize>(
         pressures[p] = *pressure + moved;
         gradients[p] = state.gradient + water.still_gradient(&points.x[p], pores.end);
         let taken = wet.volume * (state.content - wet.content);
+        if let Some((contents, changes)) = goes_on.as_mut().filter(|_| lets_through(points.material[p])) {
+            // In the first step nothing goes on.
+            let before = points.pressure_gradient.as_ref().map_or(wet.before, |before| before[p]);
+            (contents[p], changes[p]) = (state.content - wet.content, gradients[p] - before);
+        }
         // What is weightless stays so.
         if points.mass[p] > 0.0 {
             points.mass[p] += density * taken;
@@ -151,5 +165,6 @@ pub fn save<K: Kinematics<D>, const D: usize>(
         stored.push(taken);
     }
     (points.pore_pressure, points.pressure_gradient) = (Some(pressures), Some(gradients));
+    (points.content_change, points.gradient_change) = goes_on.unzip();
     halo.total(&[stored.into_iter().collect()])[0]
 }

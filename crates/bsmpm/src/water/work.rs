@@ -17,7 +17,8 @@ pub struct Work {
     /// `- dt sum V0 J w . drive - sum p out`: what drives water through the ground, and what comes in or goes out; less
     /// what lifts the water that suction takes in above the still one, and what lets it fall to where pores fill below
     pub external: Exact,
-    /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative
+    /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative; of second order dt is part of the step, and what goes
+    /// on counts here, `- sum V0 p last (zeta^n - zeta^n-1)`, though some of it came through surfaces
     pub seepage: Exact,
     /// `sum V0 p (zeta - zeta^n)`; above the still water, and where pores fill, of the whole pressure
     pub stored: Exact,
@@ -42,7 +43,7 @@ impl Work {
             };
             let soil = flow.soils[usize::from(points.material[p])].as_ref();
             let held = soil.map_or(0.0, |soil| held(flow, soil, state.pores, (pressure, state.whole), weight));
-            let through = pores.dt * wet.volume;
+            let through = pores.duration * wet.volume;
             let fall = (0..D).map(|i| wet.drive[i] * (0..D).map(|j| dF[(i, j)] * state.flux[j]).sum::<f64>());
             let fall = -through * fall.sum::<f64>();
             let taken = wet.volume * (state.content - wet.content);
@@ -55,7 +56,7 @@ impl Work {
             let lifted = (wet.ambient - wet.borne) * taken + wet.borne * filled;
             [
                 fall + lifted,
-                fall - through * state.flux.dot(&gradient),
+                fall - through * state.flux.dot(&gradient) - pressure * (wet.volume * wet.goes_on),
                 pressure * taken + lifted,
                 state.lumped * wet.tau_of(gradient).dot(&gradient),
                 wet.volume * held,

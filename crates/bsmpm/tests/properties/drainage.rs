@@ -97,7 +97,7 @@ fn no_water(_: &Vector<2>) -> f64 {
 }
 
 fn drainage(scene: &Plane) -> Result<Drainage, StepError> {
-    Drainage::at(&scene.model, &scene.points, (0.0, DT), |_| true, no_water, &scene.halo())
+    Drainage::at(&scene.model, &scene.points, (DT, DT), |_| true, no_water, &scene.halo())
 }
 
 /// What leaves the ground in a step at every node, m3.
@@ -117,7 +117,7 @@ fn a_linear_pressure_gives_the_exact_flux_and_its_moment() {
         let still = |x: &Vector<2>| 200.0 * x[0];
         let (p, places) = linear(grid, field);
         let drainage =
-            Drainage::at(&scene.model, &scene.points, (0.0, DT), |_| true, still, &scene.halo()).expect("permeable");
+            Drainage::at(&scene.model, &scene.points, (DT, DT), |_| true, still, &scene.halo()).expect("permeable");
         // A head of 1.5 m at the end of the step, the still water's pressure taken off.
         let [from, to] = slope();
         let (middle, length) = ((from + to) / 2.0, (to - from).norm());
@@ -233,7 +233,7 @@ fn water_goes_through_no_surface_without_material_near_nor_one_of_tight_soil() {
     // Only the functions left of 1 m count.
     let grid = scene.model.grid.clone();
     let left = |node: usize| grid.node_at(node)[0] <= 4;
-    let some = Drainage::at(&scene.model, &scene.points, (0.0, DT), left, no_water, &scene.halo()).expect("permeable");
+    let some = Drainage::at(&scene.model, &scene.points, (DT, DT), left, no_water, &scene.halo()).expect("permeable");
     let [drains, inflows] = some.report(&p, &scene.halo());
     let near = scene.model.surfaces().water[0].iter().filter(|point| point.x[0] < 1.0 + 0.75 * CELL).count();
     assert_eq!([drains[0].held, inflows[0].held], [near; 2]);
@@ -332,7 +332,7 @@ fn several_ranks_make_the_same_of_drains_to_the_bit() {
             let (meeting, sums, alone) = (&meeting, &sums, &alone);
             scope.spawn(move || {
                 let halo = Rank { number, nodes: model.grid.nodes(), meeting };
-                let drainage = Drainage::at(&model, &points, (0.0, DT), |_| true, no_water, &halo).expect("permeable");
+                let drainage = Drainage::at(&model, &points, (DT, DT), |_| true, no_water, &halo).expect("permeable");
                 let (p, _) = linear(&model.grid, field);
                 assert_eq!(drainage.report(&p, &halo), *alone);
                 let mut sums = sums.lock().expect("no panic");

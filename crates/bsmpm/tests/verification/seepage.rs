@@ -41,7 +41,7 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
     for cell in &cells {
         offsets.iter().for_each(|offset| seen[grid.first_node(cell) + offset] = true);
     }
-    let drainage = Drainage::at(&scene.model, &scene.points, (0.0, 1.0), |node| seen[node], |_| 0.0, &halo);
+    let drainage = Drainage::at(&scene.model, &scene.points, (1.0, 1.0), |node| seen[node], |_| 0.0, &halo);
     let drainage = drainage.expect("permeable");
     let mut solver = Skyline::of_patches(1, offsets.clone());
     solver.begin(&seen);

@@ -6,13 +6,12 @@ use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Shape};
 use crate::stabilisation::Grouped;
 use crate::tensor::Vector;
-use crate::threads::Blank;
 
 /// Functions of a patch at a point, at most: quadratic ones in three dimensions.
 pub const MOST_FUNCTIONS: usize = 27;
 
 /// Gather: what `found` makes of p_p = sum_h A_hp p_h and of grad p_p = sum_h p_h grad A_hp, for every point.
-pub fn scalars<const D: usize, T: Blank>(
+pub fn scalars<const D: usize, T: Clone + Send>(
     shape: &Shape<D>,
     nodal: &[f64],
     found: impl Fn(usize, f64, Vector<D>) -> T + Sync,
