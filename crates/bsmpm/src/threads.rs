@@ -89,8 +89,8 @@ pub fn change<T: Send>(rows: &mut [T], width: usize, change: impl Fn(usize, &mut
     });
 }
 
-/// As long as it lives, the other threads stay awake: one that has gone to sleep comes late to the next pass, and a step
-/// has many short ones.
+/// As long as it lives, the other threads stay awake: one that has gone to sleep comes late to the next pass, and a
+/// step has many short ones.
 pub struct Awake(Arc<AtomicBool>);
 
 impl Awake {

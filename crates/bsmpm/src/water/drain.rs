@@ -72,8 +72,8 @@ impl WaterCrossing {
 
 impl Drainage {
     /// Of a step with that `end` and the points at its start, whose flows count for `duration`, s; by the functions of
-    /// degree q - 1 that `counts` says. `still` is the pressure of the still water at the end, Pa. One reduction, before the first step three. Fails on
-    /// all ranks where a surface is on material that lets no water through.
+    /// degree q - 1 that `counts` says. `still` is the pressure of the still water at the end, Pa. One reduction,
+    /// before the first step three. Fails on all ranks where a surface is on material that lets no water through.
     pub fn at<K, const D: usize>(
         model: &Model<K, D>,
         points: &Points<D>,

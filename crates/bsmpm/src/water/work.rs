@@ -17,8 +17,8 @@ pub struct Work {
     /// `- dt sum V0 J w . drive - sum p out`: what drives water through the ground, and what comes in or goes out; less
     /// what lifts the water that suction takes in above the still one, and what lets it fall to where pores fill below
     pub external: Exact,
-    /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative; of second order dt is part of the step, and what goes
-    /// on counts here, `- sum V0 p last (zeta^n - zeta^n-1)`, though some of it came through surfaces
+    /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative; of second order dt is part of the step, and what
+    /// goes on counts here, `- sum V0 p last (zeta^n - zeta^n-1)`, though some of it came through surfaces
     pub seepage: Exact,
     /// `sum V0 p (zeta - zeta^n)`; above the still water, and where pores fill, of the whole pressure
     pub stored: Exact,
