@@ -179,7 +179,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             (self.timers.traffic().counts(), load::of_rank(self.points.len(), self.model.grid.nodes()));
         let outcome = {
             let _timed = self.timers.time("step");
-            let _awake = Awake::new();
+            let _awake = Awake::over(self.points.len());
             self.stepper.advance(&self.schedule, &self.model, &mut self.points, &*self.halo, &mut self.solver)?
         };
         if let Ok(accepted) = &outcome {

@@ -94,11 +94,10 @@ pub fn change<T: Send>(rows: &mut [T], width: usize, change: impl Fn(usize, &mut
 pub struct Awake(Arc<AtomicBool>);
 
 impl Awake {
-    /// From here on.
-    #[allow(clippy::new_without_default)]
-    pub fn new() -> Self {
+    /// From here on, if there are points enough to share.
+    pub fn over(points: usize) -> Self {
         let is_over = Arc::new(AtomicBool::new(false));
-        if rayon::current_num_threads() > 1 {
+        if rayon::current_num_threads() > 1 && points >= 2 * CHUNK {
             let is_over = Arc::clone(&is_over);
             rayon::spawn_broadcast(move |thread| {
                 // The first one is that of the rank, which has work of its own.

@@ -267,7 +267,7 @@ impl CheckpointState {
             held: vectors(&self.held)?,
             bodies: self.rigid.iter().map(rigid_state).collect(),
             crossed: self.crossed.volumes(),
-            flowed: self.flowed.as_ref().map(FlowedState::flow),
+            flowed: self.flowed.as_ref().map(FlowedState::flow).filter(|flowed| flowed.dt > 0.0),
         })
     }
 }

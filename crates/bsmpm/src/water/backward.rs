@@ -4,14 +4,14 @@
 //! `zeta - zeta^n - last (zeta^n - zeta^n-1) = now dt (what comes in under the pressure at the end)`, which is exact of
 //! a zeta that is a parabola of time (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, III.5).
 
-use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
 use crate::points::Points;
 use crate::water::crossed::Crossed;
 use crate::water::flow::{Flow, Motion};
 
-/// A step over the one before it, above which that tells nothing: the differences are stable below 1 + sqrt 2.
-const LONGEST: f64 = 2.0;
+/// A step over the one before it, above which that tells nothing: the differences are stable below 1 + sqrt 2; steps
+/// that were cut grow back by 2.
+const LONGEST: f64 = 2.1;
 
 /// The last step's flow, which the next one goes on with; what points took in stands with them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,18 +47,24 @@ impl Differences {
         }
     }
 
-    /// Those of the model's next step of `dt`, s, from what the points carry.
-    pub fn of<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, dt: f64) -> Self {
-        let before = points.surface.flowed.as_ref().filter(|_| is_smooth(model) && points.content_change.is_some());
-        before.map_or(Self::EULER, |flowed| Self::of_second_order(dt, flowed.dt))
+    /// Those of the model's step from `t` to `end`, s, by what the points carry.
+    pub fn of<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, (t, end): (f64, f64)) -> Self {
+        let goes_on = |flow: &Flow<D>| is_smooth(model) && points.content_change.is_some() && !flow.turns((t, end));
+        let flow = model.water.as_ref().and_then(|water| water.flow.as_ref()).filter(|flow| goes_on(flow));
+        let before = flow.and(points.surface.flowed.as_ref());
+        before.map_or(Self::EULER, |flowed| Self::of_second_order(end - t, flowed.dt))
     }
 }
 
-/// Whether the flow of a step tells of the next one's: not where pores fill, surfaces open and close, or inertia makes
-/// waves.
+/// Whether the flow of a step tells of the next one's: not where pores fill, surfaces open and close, inertia makes
+/// waves, or nothing flows.
 pub fn is_smooth<K, const D: usize>(model: &Model<K, D>) -> bool {
     let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
-    let is_smooth = |flow: &Flow<D>| flow.motion == Motion::Flows && !flow.retains() && !flow.is_one_way();
+    let flows = |flow: &Flow<D>| {
+        let some = flow.soils.iter().flatten().any(|soil| soil.permeability.is_some());
+        some && flow.motion == Motion::Flows
+    };
+    let is_smooth = |flow: &Flow<D>| flows(flow) && !flow.retains() && !flow.is_one_way();
     model.regime == Regime::QuasiStatic && flow.is_some_and(is_smooth)
 }
 

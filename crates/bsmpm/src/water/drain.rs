@@ -167,9 +167,10 @@ impl Drainage {
         }
     }
 
-    /// J  what the water that leaves under the excess pressures `p`, Pa, takes along, on this rank.
-    pub fn work(&self, p: &[f64]) -> Exact {
-        let of = |outlet: &WaterCrossing| outlet.attachment.value(&self.offsets, p) * outlet.out(&self.offsets, p);
+    /// J  what the water that leaves under the excess pressures `p`, Pa, takes along, on this rank, `times` as often.
+    pub fn work(&self, p: &[f64], times: f64) -> Exact {
+        let of =
+            |outlet: &WaterCrossing| times * outlet.attachment.value(&self.offsets, p) * outlet.out(&self.offsets, p);
         self.outlets.iter().map(of).collect()
     }
 

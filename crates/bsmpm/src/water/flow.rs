@@ -54,6 +54,18 @@ impl<const D: usize> Flow<D> {
         self.drains.iter().any(seeps) || self.inflows.iter().any(|inflow| inflow.acts && inflow.runs_off)
     }
 
+    /// Whether a row of what is given at a surface that water crosses now lies in a step, its start included and its end
+    /// not: from there on it goes another way, or jumps.
+    pub fn turns(&self, (t, end): (f64, f64)) -> bool {
+        let given = |given: &Given| match given {
+            Given::Head(course) | Given::Pressure(course) => course.has_row((t, end)),
+            Given::StillWater | Given::Seepage => false,
+        };
+        self.drains.iter().any(|drain| drain.acts && given(&drain.given))
+            || self.faces.iter().any(|face| face.acts && given(&face.given))
+            || self.inflows.iter().any(|inflow| inflow.acts && inflow.rate.has_row((t, end)))
+    }
+
     /// m  the largest suction head at which air enters a soil
     pub fn entry(&self) -> f64 {
         let retention = self.soils.iter().flatten().filter_map(|soil| soil.retention.as_ref());
@@ -146,6 +158,11 @@ pub enum Given {
 pub struct Course(pub Vec<(f64, f64)>);
 
 impl Course {
+    /// Whether a row lies in a time, its start included and its end not.
+    fn has_row(&self, (from, to): (f64, f64)) -> bool {
+        self.0.iter().any(|(t, _)| (from..to).contains(t))
+    }
+
     /// At time `t`; 0 of none.
     pub fn at(&self, t: f64) -> f64 {
         let value = |row: Option<&(f64, f64)>| row.map_or(0.0, |row| row.1);

@@ -104,7 +104,7 @@ impl<const D: usize> Pores<D> {
             return Ok(None);
         }
         let (shape, end) = (full.lowered_with_derivatives(&model.grid, points), t + dt);
-        let differences = Differences::of(model, points, dt);
+        let differences = Differences::of(model, points, (t, end));
         let duration = differences.now * dt;
         let of_point = |p: usize| Wet::of(model, (water, flow), (points, p), (t, end), differences.last);
         let wet: Vec<Option<Wet<D>>> = (0..points.len()).map(of_point).collect();

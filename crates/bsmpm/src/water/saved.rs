@@ -141,8 +141,6 @@ pub fn save<K: Kinematics<D>, const D: usize>(
     let density = water.density(model);
     let holds = water.flow.as_ref().is_some_and(|flow| flow.retains());
     let (mut pressures, mut gradients) = (vec![0.0; states.len()], vec![Vector::zeros(); states.len()]);
-    let lets_through =
-        |material: u16| water.flow.as_ref().is_some_and(|flow| flow.permeability(material, 1.0).is_some());
     let mut goes_on = is_smooth(model).then(|| (vec![0.0; states.len()], gradients.clone()));
     let mut stored = Vec::with_capacity(states.len());
     for (p, (state, wet)) in states.iter().zip(&pores.wet).enumerate() {
@@ -153,7 +151,7 @@ pub fn save<K: Kinematics<D>, const D: usize>(
         pressures[p] = *pressure + moved;
         gradients[p] = state.gradient + water.still_gradient(&points.x[p], pores.end);
         let taken = wet.volume * (state.content - wet.content);
-        if let Some((contents, changes)) = goes_on.as_mut().filter(|_| lets_through(points.material[p])) {
+        if let Some((contents, changes)) = &mut goes_on {
             // In the first step nothing goes on.
             let before = points.pressure_gradient.as_ref().map_or(wet.before, |before| before[p]);
             (contents[p], changes[p]) = (state.content - wet.content, gradients[p] - before);

@@ -17,10 +17,10 @@ pub struct Work {
     /// `- dt sum V0 J w . drive - sum p out`: what drives water through the ground, and what comes in or goes out; less
     /// what lifts the water that suction takes in above the still one, and what lets it fall to where pores fill below
     pub external: Exact,
-    /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative; of second order dt is part of the step, and what
-    /// goes on counts here, `- sum V0 p last (zeta^n - zeta^n-1)`, though some of it came through surfaces
+    /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative
     pub seepage: Exact,
-    /// `sum V0 p (zeta - zeta^n)`; above the still water, and where pores fill, of the whole pressure
+    /// `sum V0 p (zeta - zeta^n)`; above the still water, and where pores fill, of the whole pressure; and by what the
+    /// balance of second order differs from flows that count for all of dt
     pub stored: Exact,
     /// of the term that makes the pair of splines stable
     pub tau: Exact,
@@ -34,6 +34,8 @@ impl Work {
         let Problem { model, nodes, points, halo, .. } = *problem;
         let (pores, balance) = (nodes.pores.as_ref()?, found.water.as_ref()?);
         let (flow, weight) = model.water.as_ref().and_then(|water| Some((water.flow.as_ref()?, water.unit_weight)))?;
+        let now = pores.differences.now;
+        let dt = pores.duration / now;
         let each = scalars::scalars(&pores.shape, &found.p, |p, pressure, gradient| {
             let Some(wet) = &pores.wet[p] else { return [0.0; 5] };
             let dF = found.trial.dF(p);
@@ -43,9 +45,10 @@ impl Work {
             };
             let soil = flow.soils[usize::from(points.material[p])].as_ref();
             let held = soil.map_or(0.0, |soil| held(flow, soil, state.pores, (pressure, state.whole), weight));
-            let through = pores.duration * wet.volume;
+            let through = dt * wet.volume;
             let fall = (0..D).map(|i| wet.drive[i] * (0..D).map(|j| dF[(i, j)] * state.flux[j]).sum::<f64>());
             let fall = -through * fall.sum::<f64>();
+            let driven = through * state.flux.dot(&gradient);
             let taken = wet.volume * (state.content - wet.content);
             // What pores take up comes with the whole pressure; what suction keeps above the still water has been
             // lifted there.
@@ -56,17 +59,21 @@ impl Work {
             let lifted = (wet.ambient - wet.borne) * taken + wet.borne * filled;
             [
                 fall + lifted,
-                fall - through * state.flux.dot(&gradient) - pressure * (wet.volume * wet.goes_on),
-                pressure * taken + lifted,
+                fall - driven,
+                pressure * (taken - wet.volume * wet.goes_on) + lifted + (1.0 - now) * driven,
                 state.lumped * wet.tau_of(gradient).dot(&gradient),
                 wet.volume * held,
             ]
         });
         let sum = |k: usize| -> Exact { each.iter().map(|of| of[k]).collect() };
         let mut external = sum(0);
-        external -= &pores.drainage.work(&found.p);
-        external -= &over_layers(halo, 1, |node| found.p[node] * balance.out[node]);
-        Some(Self { external, seepage: sum(1), stored: sum(2), tau: sum(3), held: sum(4) })
+        let mut stored = sum(2);
+        let flows = [(&mut external, 1.0 / now), (&mut stored, (1.0 - now) / now)];
+        for (sum, times) in flows {
+            *sum -= &pores.drainage.work(&found.p, times);
+            *sum -= &over_layers(halo, 1, |node| times * found.p[node] * balance.out[node]);
+        }
+        Some(Self { external, seepage: sum(1), stored, tau: sum(3), held: sum(4) })
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{M, Plane, column, geometric, run, run_from, settlement};
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::step::StepReport;
-use bsmpm::water::flow::{Course, DrainedFace, Given, PermeabilityLaw};
+use bsmpm::water::flow::{Course, DrainedFace, Given, PermeabilityLaw, Soil};
 use bsmpm::water::observed::PoreWater;
 
 /// T, U, and p/p0 at depths of .25, .5 and 1 of the column below its top.
@@ -136,6 +136,44 @@ fn a_line_across_which_strains_may_jump_does_not_tear_the_pressure() {
     let off = whole.iter().zip(&lined).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     println!("pressures and U(.2) with a line at half the height: off by {off:.1e}");
     assert!(off < 5e-4);
+}
+
+/// The lower half lets nothing through, and exchanges what functions of both halves let it: no water is lost there.
+#[test]
+fn books_hold_where_soil_that_lets_nothing_through_touches_soil_that_does() {
+    let mut scene = column(8, 1.0, LOAD, PermeabilityLaw::Constant);
+    scene.model.materials.push(scene.model.materials[0].clone());
+    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    let tight = flow.soils[0].clone().map(|soil| Soil { permeability: None, ..soil });
+    flow.soils.push(tight);
+    for p in 0..scene.points.len() {
+        scene.points.material[p] = u16::from(scene.points.x[p][1] < 0.45);
+    }
+    let (mut out, mut worst) = (0.0, 0.0_f64);
+    run(&mut scene, geometric(1e-3, 0.2, 30), |_, _, report| {
+        let water = report.water.as_ref().expect("water flows");
+        out += water.crossed.out();
+        worst = worst.max((water.stored + water.crossed.out() - water.left).abs());
+    });
+    println!("out {out:.3e} m3, books off by {worst:.1e}");
+    assert!(out > 0.1 * LOAD / M && worst < 1e-12 * out);
+}
+
+/// What drives water through a column that has settled works p times what crosses, and seepage takes it.
+#[test]
+fn steady_seepage_takes_what_drives_it() {
+    let mut scene = column(8, 1.0, 0.0, PermeabilityLaw::Constant);
+    scene.model.balances_energy = true;
+    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    let given = Given::Pressure(Course(vec![(0.0, LOAD)]));
+    flow.faces.push(DrainedFace { axis: 1, upper: false, given, acts: true });
+    let mut last = [0.0; 3];
+    run(&mut scene, geometric(1e-3, 8.0, 60), |_, _, report| {
+        let (energy, water) = (report.energy.expect("books are kept"), report.water.as_ref().expect("water flows"));
+        last = [-LOAD * water.crossed.faces[1], energy.external, energy.plastic];
+    });
+    println!("pressure times what came in {:.6e} J, external {:.6e}, seepage {:.6e}", last[0], last[1], last[2]);
+    assert!(last[0] > 0.0 && last.iter().all(|work| (work / last[0] - 1.0).abs() < 1e-5));
 }
 
 /// Water that comes in below swells a column, until its upper quarter is taken away: what has come and gone, what the

@@ -338,7 +338,8 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
 fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some((growth, _)) = case.analysis.growth.filter(|(growth, _)| *growth > MOST_GROWTH) {
         report.warn(format!(
-            "analysis.growth: {growth}: the error of a step is as large as it is long; shown to be right up to {MOST_GROWTH}"
+            "analysis.growth: {growth}: the error of a step grows with its length, and above 2.1 steps are of first order; shown to be \
+             right up to {MOST_GROWTH}"
         ));
     }
     let alike = case.analysis.growth.is_none() && root.record("analysis").is_some_and(|record| record.gives("dt_max"));
