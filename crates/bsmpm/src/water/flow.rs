@@ -54,8 +54,8 @@ impl<const D: usize> Flow<D> {
         self.drains.iter().any(seeps) || self.inflows.iter().any(|inflow| inflow.acts && inflow.runs_off)
     }
 
-    /// Whether a row of what is given at a surface that water crosses now lies in a step, its start included and its end
-    /// not: from there on it goes another way, or jumps.
+    /// Whether a row of what is given at a surface that water crosses now lies in a step, its start included and its
+    /// end not: from there on it goes another way, or jumps.
     pub fn turns(&self, (t, end): (f64, f64)) -> bool {
         let given = |given: &Given| match given {
             Given::Head(course) | Given::Pressure(course) => course.has_row((t, end)),
