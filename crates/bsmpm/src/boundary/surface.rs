@@ -8,8 +8,7 @@ use crate::grid::{Contributions, Grid, KnotVector};
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
-use crate::water::backward::Flowed;
-use crate::water::crossed::Crossed;
+use crate::water::crossed::{Crossed, Flowed};
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
 /// It sets the reach beyond the cells that hold points: .75, 1.29 and 1.85 cells for the orders 1, 2 and 3. With a much

@@ -6,23 +6,11 @@
 
 use crate::model::{Model, Regime};
 use crate::points::Points;
-use crate::water::crossed::Crossed;
 use crate::water::flow::{Flow, Motion};
 
 /// A step over the one before it, above which that tells nothing: the differences are stable below 1 + sqrt 2; steps
 /// that were cut grow back by 2.
 const LONGEST: f64 = 2.1;
-
-/// The last step's flow, which the next one goes on with; what points took in stands with them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Flowed {
-    /// s  length of the step
-    pub dt: f64,
-    /// m3  that crossed the surface of the ground in it
-    pub crossed: Crossed,
-    /// m3  that it left out of balance
-    pub left: f64,
-}
 
 /// What a step makes of the last one and of its own flow.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -38,3 +38,14 @@ impl Crossed {
         self.drains.iter().chain(&self.faces).sum::<f64>() - self.inflows.iter().sum::<f64>()
     }
 }
+
+/// The last step's flow, which the next one goes on with; what points took in stands with them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Flowed {
+    /// s  length of the step
+    pub dt: f64,
+    /// m3  that crossed the surface of the ground in it
+    pub crossed: Crossed,
+    /// m3  that it left out of balance
+    pub left: f64,
+}
