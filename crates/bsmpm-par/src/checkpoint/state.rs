@@ -16,7 +16,8 @@ use bsmpm_io::frames::Entry;
 use bsmpm_io::manifest::Manifest;
 use bsmpm_io::table::TableMark;
 use bsmpm_scene::{GridSpec, Line};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -94,6 +95,7 @@ pub struct CheckpointState {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FlowedState {
+    #[serde(deserialize_with = "length")]
     dt: f64,
     crossed: CrossedState,
     left: f64,
@@ -107,6 +109,12 @@ impl FlowedState {
     fn flow(&self) -> Flowed {
         Flowed { dt: self.dt, crossed: self.crossed.volumes(), left: self.left }
     }
+}
+
+/// The length of a step, s, of which there is more than none.
+fn length<'de, From: Deserializer<'de>>(from: From) -> Result<f64, From::Error> {
+    let dt = f64::deserialize(from)?;
+    if dt > 0.0 { Ok(dt) } else { Err(From::Error::custom(format_args!("its last step of flow took {dt} s"))) }
 }
 
 /// Water that has gone through surfaces of the ground, m3 per metre; nothing of a run without any.
@@ -266,7 +274,7 @@ impl CheckpointState {
             held: vectors(&self.held)?,
             bodies: self.rigid.iter().map(rigid_state).collect(),
             crossed: self.crossed.volumes(),
-            flowed: self.flowed.as_ref().map(FlowedState::flow).filter(|flowed| flowed.dt > 0.0),
+            flowed: self.flowed.as_ref().map(FlowedState::flow),
         })
     }
 }
@@ -389,5 +397,14 @@ mod tests {
         );
         let unknown = old.replace("easy", "hard");
         assert!(serde_json::from_str::<StateForm>(&unknown).is_err());
+    }
+
+    #[test]
+    fn a_step_of_flow_took_time() {
+        let kept = |dt: f64| format!(r#"{{"dt":{dt},"crossed":{{"drains":[],"faces":[],"inflows":[]}},"left":0.0}}"#);
+        let flow = serde_json::from_str::<FlowedState>(&kept(0.5)).unwrap().flow();
+        assert_eq!(flow, Flowed { dt: 0.5, ..Flowed::default() });
+        let refused = serde_json::from_str::<FlowedState>(&kept(0.0)).unwrap_err();
+        assert!(refused.to_string().contains("its last step of flow took 0 s"), "{refused}");
     }
 }
