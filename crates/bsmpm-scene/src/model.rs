@@ -2,7 +2,8 @@
 
 use crate::region::Region;
 use crate::seed::seed_bodies;
-use crate::{Body, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Stage, surfaces};
+use crate::words::AnalysisType;
+use crate::{Acting, Body, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Shares, Stage, surfaces};
 use bsmpm::background::Background;
 use bsmpm::boundary::rigid::{self, Reaching, RigidBody, RigidState};
 use bsmpm::boundary::{Boundary, Support};
@@ -21,7 +22,7 @@ use bsmpm::step::adjoint::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::Flow;
+use bsmpm::water::flow::{Course, Flow};
 use std::marker::PhantomData;
 
 pub use crate::grid::vector;
@@ -248,20 +249,51 @@ fn placed_at<const D: usize>(lower: [f64; 3], x: &Vector<D>) -> [f64; 3] {
     std::array::from_fn(|axis| lower[axis] + x.get(axis).copied().unwrap_or(0.0))
 }
 
-/// Steps and the times that they must hit: frames, pictures, profiles, checks and stages.
+/// Steps and the times that they must hit: frames, pictures, profiles, checks and stages, and where water flows those at
+/// which something given turns.
 pub fn schedule(case: &Case) -> Schedule {
     let checks = case.checks.iter().map(|check| check.at);
     let stages = case.stages.iter().map(|stage| stage.at);
     let profiles = case.profiles.iter().flat_map(|profile| profile.times.iter().copied());
-    let times = frame_times(case).into_iter().chain(checks).chain(stages).chain(profiles);
+    let times = frame_times(case).into_iter().chain(checks).chain(stages).chain(profiles).chain(turns(case));
     let schedule = Schedule::new(case.analysis.dt, case.analysis.end, times);
     let Some((factor, most)) = case.analysis.growth else { return schedule };
     schedule.growing(Growth { factor, most, restarts: case.stages.iter().map(|stage| stage.at).collect() })
 }
 
+/// Times at which loads, motions, levels, heads and pressures that are given turn, where water flows: it would take the
+/// step that passes over one for a straight way. A rate has its mean over a step.
+fn turns(case: &Case) -> Vec<f64> {
+    let Some(flow) = case.flow.as_ref().filter(|_| case.analysis.kind == AnalysisType::Consolidation) else {
+        return Vec::new();
+    };
+    let begins = |what: Acting| {
+        let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
+        times.filter_map(|t| case.acts_since(what, t)).collect::<Vec<_>>()
+    };
+    let course = |what: Acting, ramp: f64, shares: &Shares| -> Vec<f64> {
+        let rows: Vec<f64> = shares.iter().map(|row| row.0).collect();
+        let rows = if rows.is_empty() { vec![ramp] } else { rows };
+        begins(what).into_iter().flat_map(|begin| rows.iter().map(move |row| begin + row)).collect()
+    };
+    let tractions = case.tractions.iter().map(|load| (load.ramp, &load.amplitude));
+    let loads = tractions.chain(case.point_loads.iter().map(|load| (load.ramp, &load.amplitude)));
+    let loads = loads.enumerate().flat_map(|(number, (ramp, shares))| course(Acting::Load(number), ramp, shares));
+    let strips = case.footing.iter().map(|of| &of.path).chain(case.prescribed.iter().map(|of| &of.path));
+    let bodies = case.rigid.iter().enumerate().flat_map(|(number, body)| {
+        let turned = body.rotation.iter().map(|row| row.0);
+        let pushed = course(Acting::Rigid(number), body.ramp, &body.amplitude);
+        body.path.rows.iter().map(|row| row.0).chain(turned).chain(pushed).collect::<Vec<_>>()
+    });
+    let given = flow.drains.iter().filter_map(|drain| drain.given.course()).flat_map(Course::times);
+    let levels = case.water.iter().flat_map(|water| water.table.levels()).flatten().map(|row| row.0);
+    let moved = strips.flat_map(|path| path.rows.iter().map(|row| row.0));
+    loads.chain(moved).chain(bodies).chain(given).chain(levels).collect()
+}
+
 /// Nominal number of steps.
 pub fn nominal_steps(case: &Case) -> u64 {
-    if case.analysis.growth.is_some() {
+    if case.analysis.growth.is_some() || case.analysis.kind == AnalysisType::Consolidation {
         let schedule = schedule(case);
         return std::iter::successors(schedule.next(0.0), |&t| schedule.next(t)).count() as u64;
     }

@@ -84,7 +84,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         boundary,
         factor,
         end,
-        dt: analysis.as_ref().map(|analysis| analysis.dt),
+        dt: analysis.as_ref().filter(|of| of.kind != AnalysisType::Consolidation).map(|analysis| analysis.dt),
     };
     let footing = strip::footing(record, around, report);
     let prescribed = strip::prescribed(record, around, report);

@@ -22,6 +22,7 @@ use crate::grid::Grid;
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use crate::points::Points;
+use crate::schedule::turns;
 use crate::tensor::Vector;
 use crate::water::crossed::Crossed;
 
@@ -105,6 +106,26 @@ impl<const D: usize> Boundary<D> {
         let half = start.map_or(Vector::zeros(), |cell| grid.cell_box(&cell).1 * share);
         let F = points.F.at(p);
         (0..D).map(|j| F[(axis, j)].abs() * half[j]).sum()
+    }
+
+    /// A place of the material's surface, or that on the face which holds the material where the place lies beyond it,
+    /// as one that is told by the material beside it may.
+    pub fn kept_in(&self, grid: &Grid<D>, mut x: Vector<D>) -> Vector<D> {
+        for Support { axis, upper, velocity, contact, .. } in &self.supports {
+            if velocity[*axis] == Some(0.0) || contact.is_some() {
+                let length = grid.axes()[*axis].length();
+                x[*axis] = if *upper { x[*axis].min(length) } else { x[*axis].max(0.0) };
+            }
+        }
+        x
+    }
+
+    /// Whether a load or a motion that is given goes another way, or jumps, from a time on that lies in a step.
+    pub fn turns(&self, step: (f64, f64)) -> bool {
+        let rows = |rows: &[(f64, Vector<3>)]| turns(rows.iter().map(|row| row.0), step);
+        self.loads.iter().any(|load| turns(load.times(), step))
+            || self.strips.iter().any(|strip| strip.acts() && turns(strip.path.rows.iter().map(|row| row.0), step))
+            || self.rigid.iter().any(|body| body.acts && (rows(&body.path) || rows(&body.load)))
     }
 
     /// The state of strips and loads at the start: no traction, every point at its place.

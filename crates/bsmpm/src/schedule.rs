@@ -19,6 +19,13 @@ where
     Some(if is_later { before.1 + (after.1 - before.1) * ((t - before.0) / (after.0 - before.0)) } else { after.1 })
 }
 
+/// Whether one of these times, at which something given by rows turns, lies in a step, its start included and its end
+/// not.
+pub fn turns(mut times: impl Iterator<Item = f64>, (t, end): (f64, f64)) -> bool {
+    let slack = SAME * (end - t);
+    times.any(|time| (t - slack..end - slack).contains(&time))
+}
+
 /// Steps of which each is longer than the one before, from dt on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {

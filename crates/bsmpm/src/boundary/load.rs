@@ -47,6 +47,12 @@ impl<const D: usize> Load<D> {
         !self.amplitude.is_empty() && self.amplitude.iter().all(|row| row.1 == 0.0)
     }
 
+    /// Those at which its course turns, s (or pseudo-time).
+    pub(super) fn times(&self) -> impl Iterator<Item = f64> {
+        let ramp = (self.amplitude.is_empty() && self.ramp > 0.0).then_some(self.ramp);
+        self.amplitude.iter().map(|row| row.0).chain(ramp)
+    }
+
     /// Share of the load that acts at time `t`.
     fn grown(&self, t: f64) -> f64 {
         match self.amplitude.last() {

@@ -2,7 +2,7 @@
 #![doc = include_str!("../water.md")]
 
 use crate::points::Points;
-use crate::schedule::between;
+use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 
 /// Still water, by its level.
@@ -61,6 +61,11 @@ impl Ambient {
             Self::Level(rows) => vec![rows],
             Self::Line(places) => places.iter_mut().map(|place| &mut place.rows).collect(),
         }
+    }
+
+    /// Whether a row of it lies in a step.
+    pub fn turns(&self, step: (f64, f64)) -> bool {
+        turns(self.levels().into_iter().flatten().map(|row| row.0), step)
     }
 
     /// Whether it rises or falls.

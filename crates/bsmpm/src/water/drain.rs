@@ -14,6 +14,7 @@ use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
 use crate::tensor::Vector;
+use crate::water::backward::Differences;
 use crate::water::flow::{Flow, Given, Motion};
 
 /// Conductance of a drain over that of the soil of a cell, k/(gamma_w h).
@@ -71,13 +72,13 @@ impl WaterCrossing {
 }
 
 impl Drainage {
-    /// Of a step with that `end` and the points at its start, whose flows count for `duration`, s; by the functions of
+    /// Of a step from `t` to `end` that takes these `differences`, and the points at its start; by the functions of
     /// degree q - 1 that `counts` says. `still` is the pressure of the still water at the end, Pa. One reduction,
     /// before the first step three. Fails on all ranks where a surface is on material that lets no water through.
     pub fn at<K, const D: usize>(
         model: &Model<K, D>,
         points: &Points<D>,
-        (end, duration): (f64, f64),
+        ((t, end), differences): ((f64, f64), Differences),
         counts: impl Fn(usize) -> bool,
         still: impl Fn(&Vector<D>) -> f64,
         halo: &dyn Halo,
@@ -89,12 +90,13 @@ impl Drainage {
         if of == [0; 2] || flow.motion != Motion::Flows {
             return Ok(Self { of, ..Self::default() });
         }
-        let (grid, offsets) = (&model.grid, model.grid.lowered_offsets());
+        let (grid, offsets, duration) = (&model.grid, model.grid.lowered_offsets(), differences.now * (end - t));
         let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo).water;
         let mut places = places(flow, points, &anchors, halo).into_iter();
         let (mut outlets, mut torn) = (Vec::new(), vec![0.0; of[0] + of[1]]);
         for ((surface, (starts, _)), acts) in flow.surfaces().enumerate().zip(flow.acting()) {
-            let here: Vec<SurfacePlace<D>> = places.by_ref().take(starts.len()).collect();
+            let kept = |place: SurfacePlace<D>| SurfacePlace { x: model.boundary.kept_in(grid, place.x), ..place };
+            let here: Vec<SurfacePlace<D>> = places.by_ref().take(starts.len()).map(kept).collect();
             if !acts {
                 continue;
             }
@@ -119,7 +121,8 @@ impl Drainage {
                     }
                     None => {
                         let inflow = &flow.inflows[surface - flow.drains.len()];
-                        let rain = WaterCrossing { inflow: through * inflow.rate.at(end), ..none };
+                        let rain =
+                            WaterCrossing { inflow: through * differences.of_rate(&inflow.rate, (t, end)), ..none };
                         if inflow.runs_off {
                             WaterCrossing { conductance, given: dry, one_way: true, ..rain }
                         } else {

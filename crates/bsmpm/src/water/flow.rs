@@ -1,7 +1,7 @@
 //! Water that flows: what the soils, the drains and the inflows are to it.
 
 use crate::boundary::SurfacePoint;
-use crate::schedule::between;
+use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 use crate::water::retention::Retention;
 
@@ -54,16 +54,14 @@ impl<const D: usize> Flow<D> {
         self.drains.iter().any(seeps) || self.inflows.iter().any(|inflow| inflow.acts && inflow.runs_off)
     }
 
-    /// Whether a row of what is given at a surface that water crosses now lies in a step, its start included and its
-    /// end not: from there on it goes another way, or jumps.
-    pub fn turns(&self, (t, end): (f64, f64)) -> bool {
-        let given = |given: &Given| match given {
-            Given::Head(course) | Given::Pressure(course) => course.has_row((t, end)),
-            Given::StillWater | Given::Seepage => false,
-        };
+    /// Whether what is given at a surface that water crosses now goes another way, or jumps, from a row on that lies in
+    /// a step.
+    pub fn turns(&self, step: (f64, f64)) -> bool {
+        let turn = |course: &Course| turns(course.times(), step);
+        let given = |given: &Given| given.course().is_some_and(turn);
         self.drains.iter().any(|drain| drain.acts && given(&drain.given))
             || self.faces.iter().any(|face| face.acts && given(&face.given))
-            || self.inflows.iter().any(|inflow| inflow.acts && inflow.rate.has_row((t, end)))
+            || self.inflows.iter().any(|inflow| inflow.acts && turn(&inflow.rate))
     }
 
     /// m  the largest suction head at which air enters a soil
@@ -157,10 +155,29 @@ pub enum Given {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course(pub Vec<(f64, f64)>);
 
+impl Given {
+    /// What follows time of itself.
+    pub fn course(&self) -> Option<&Course> {
+        match self {
+            Self::Head(course) | Self::Pressure(course) => Some(course),
+            Self::StillWater | Self::Seepage => None,
+        }
+    }
+}
+
 impl Course {
-    /// Whether a row lies in a time, its start included and its end not.
-    fn has_row(&self, (from, to): (f64, f64)) -> bool {
-        self.0.iter().any(|(t, _)| (from..to).contains(t))
+    /// Of its rows, s.
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        self.0.iter().map(|row| row.0)
+    }
+
+    /// Its integral over a time: exact, wherever the rows are.
+    pub fn integral(&self, (from, to): (f64, f64)) -> f64 {
+        let within = self.times().filter(|t| from < *t && *t < to);
+        let ends = within.chain([to]);
+        let part =
+            |(start, sum): (f64, f64), end: f64| (end, sum + 0.5 * (end - start) * (self.at(start) + self.at(end)));
+        ends.fold((from, 0.0), part).1
     }
 
     /// At time `t`; 0 of none.

@@ -10,6 +10,7 @@ use bsmpm::parallel::{LinearSolver, Symmetry};
 use bsmpm::tensor::Vector;
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
+use bsmpm::water::backward::Differences;
 use bsmpm::water::drain::{DrainReport, Drainage};
 use bsmpm::water::flow::{Course, Drain, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil};
 use std::f64::consts::{FRAC_PI_2, LN_2};
@@ -41,7 +42,8 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
     for cell in &cells {
         offsets.iter().for_each(|offset| seen[grid.first_node(cell) + offset] = true);
     }
-    let drainage = Drainage::at(&scene.model, &scene.points, (1.0, 1.0), |node| seen[node], |_| 0.0, &halo);
+    let drainage =
+        Drainage::at(&scene.model, &scene.points, ((0.0, 1.0), Differences::EULER), |node| seen[node], |_| 0.0, &halo);
     let drainage = drainage.expect("permeable");
     let mut solver = Skyline::of_patches(1, offsets.clone());
     solver.begin(&seen);

@@ -11,6 +11,7 @@ use crate::words::{AnalysisType, Side, Word};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::water::backward::LONGEST;
 use bsmpm::water::flow::{Course, Given, Motion, Soil};
 
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
@@ -338,8 +339,9 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
 fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some((growth, _)) = case.analysis.growth.filter(|(growth, _)| *growth > MOST_GROWTH) {
         report.warn(format!(
-            "analysis.growth: {growth}: the error of a step grows with its length, and above 2.1 steps are of first order; shown to be \
-             right up to {MOST_GROWTH}"
+            "analysis.growth: {growth}: the error of a step grows with its length, what consolidates goes beyond its end (by .1, 1.2 % \
+             with 1.25, 1.5), and steps longer than {LONGEST} times the one before are of first order; shown to be right up to \
+             {MOST_GROWTH}"
         ));
     }
     let alike = case.analysis.growth.is_none() && root.record("analysis").is_some_and(|record| record.gives("dt_max"));
