@@ -261,34 +261,27 @@ pub fn schedule(case: &Case) -> Schedule {
     schedule.growing(Growth { factor, most, restarts: case.stages.iter().map(|stage| stage.at).collect() })
 }
 
-/// Times at which loads, motions, levels, heads and pressures that are given turn, where water flows: it would take the
-/// step that passes over one for a straight way. A rate has its mean over a step.
+/// Times at which loads, strips, levels, heads and pressures that are given turn, where water flows, beside which there
+/// are no rigid bodies: what lies between the ends of a step would not be seen. A rate has its mean over a step.
 fn turns(case: &Case) -> Vec<f64> {
     let Some(flow) = case.flow.as_ref().filter(|_| case.analysis.kind == AnalysisType::Consolidation) else {
         return Vec::new();
     };
-    let begins = |what: Acting| {
-        let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
-        times.filter_map(|t| case.acts_since(what, t)).collect::<Vec<_>>()
-    };
-    let course = |what: Acting, ramp: f64, shares: &Shares| -> Vec<f64> {
+    let course = |(number, (ramp, shares)): (usize, (f64, &Shares))| -> Vec<f64> {
         let rows: Vec<f64> = shares.iter().map(|row| row.0).collect();
         let rows = if rows.is_empty() { vec![ramp] } else { rows };
-        begins(what).into_iter().flat_map(|begin| rows.iter().map(move |row| begin + row)).collect()
+        let begun = |t: f64| case.acts_since(Acting::Load(number), t);
+        let begins = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at)).filter_map(begun);
+        begins.flat_map(|begin| rows.iter().map(move |row| begin + row)).collect()
     };
     let tractions = case.tractions.iter().map(|load| (load.ramp, &load.amplitude));
     let loads = tractions.chain(case.point_loads.iter().map(|load| (load.ramp, &load.amplitude)));
-    let loads = loads.enumerate().flat_map(|(number, (ramp, shares))| course(Acting::Load(number), ramp, shares));
+    let loads = loads.enumerate().flat_map(course);
     let strips = case.footing.iter().map(|of| &of.path).chain(case.prescribed.iter().map(|of| &of.path));
-    let bodies = case.rigid.iter().enumerate().flat_map(|(number, body)| {
-        let turned = body.rotation.iter().map(|row| row.0);
-        let pushed = course(Acting::Rigid(number), body.ramp, &body.amplitude);
-        body.path.rows.iter().map(|row| row.0).chain(turned).chain(pushed).collect::<Vec<_>>()
-    });
     let given = flow.drains.iter().filter_map(|drain| drain.given.course()).flat_map(Course::times);
     let levels = case.water.iter().flat_map(|water| water.table.levels()).flatten().map(|row| row.0);
     let moved = strips.flat_map(|path| path.rows.iter().map(|row| row.0));
-    loads.chain(moved).chain(bodies).chain(given).chain(levels).collect()
+    loads.chain(moved).chain(given).chain(levels).collect()
 }
 
 /// Nominal number of steps.

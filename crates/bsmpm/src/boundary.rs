@@ -120,12 +120,10 @@ impl<const D: usize> Boundary<D> {
         x
     }
 
-    /// Whether a load or a motion that is given goes another way, or jumps, from a time on that lies in a step.
+    /// Whether a load or the motion of a strip turns sharply in a step.
     pub fn turns(&self, step: (f64, f64)) -> bool {
-        let rows = |rows: &[(f64, Vector<3>)]| turns(rows.iter().map(|row| row.0), step);
-        self.loads.iter().any(|load| turns(load.times(), step))
-            || self.strips.iter().any(|strip| strip.acts() && turns(strip.path.rows.iter().map(|row| row.0), step))
-            || self.rigid.iter().any(|body| body.acts && (rows(&body.path) || rows(&body.load)))
+        let moves = |strip: &Strip<D>| turns(&strip.path.rows, Vector::zeros(), |u| u.norm(), step);
+        self.loads.iter().any(|load| load.turns(step)) || self.strips.iter().any(|strip| strip.acts() && moves(strip))
     }
 
     /// The state of strips and loads at the start: no traction, every point at its place.

@@ -19,11 +19,20 @@ where
     Some(if is_later { before.1 + (after.1 - before.1) * ((t - before.0) / (after.0 - before.0)) } else { after.1 })
 }
 
-/// Whether one of these times, at which something given by rows turns, lies in a step, its start included and its end
-/// not.
-pub fn turns(mut times: impl Iterator<Item = f64>, (t, end): (f64, f64)) -> bool {
+/// Whether what is given by rows turns sharply in a step, its start included and its end not: where the slope changes by
+/// more than half of the steeper one. Rows as of [`between`], at the last of which they stay.
+pub fn turns<T>(rows: &[(f64, T)], start: T, size: impl Fn(T) -> f64, (t, end): (f64, f64)) -> bool
+where
+    T: Copy + Sub<Output = T> + Mul<f64, Output = T>,
+{
     let slack = SAME * (end - t);
-    times.any(|time| (t - slack..end - slack).contains(&time))
+    let slope = |from: (f64, T), to: (f64, T)| (to.1 - from.1) * (to.0 - from.0).max(f64::MIN_POSITIVE).recip();
+    let is_sharp = |k: usize| {
+        let (before, row) = (if k == 0 { (0.0, start) } else { rows[k - 1] }, rows[k]);
+        let (comes, goes) = (slope(before, row), slope(row, *rows.get(k + 1).unwrap_or(&(f64::MAX, row.1))));
+        size(goes - comes) > 0.5 * f64::max(size(comes), size(goes))
+    };
+    (0..rows.len()).any(|k| (t - slack..end - slack).contains(&rows[k].0) && is_sharp(k))
 }
 
 /// Steps of which each is longer than the one before, from dt on.
@@ -191,6 +200,19 @@ mod tests {
             [Some(2.0), Some(3.0), Some(4.0), Some(2.0), Some(0.0), None]
         );
         assert_eq!(between(&rows[1..], 0.0, 0.25), Some(1.0));
+    }
+
+    #[test]
+    fn rows_turn_where_a_slope_changes_by_half_and_not_where_they_follow_a_curve() {
+        let turn = |rows: &[(f64, f64)], step| turns(rows, 0.0, f64::abs, step);
+        let ramp = [(1.0, 2.0), (2.0, 3.2), (3.0, 3.2), (3.1, 9.0)];
+        let found = [(0.0, 1.0), (1.0, 2.0), (1.5, 2.5), (2.0, 2.9), (2.2, 3.0), (3.0, 3.1), (3.1, 5.0), (3.2, 5.0)];
+        assert_eq!(found.map(|step| turn(&ramp, step)), [false, false, true, true, false, true, true, false]);
+        // A row on the end of a step, but for round-off, is of the next one.
+        assert!(!turn(&ramp, (1.0, 2.0 + 1e-15)) && turn(&ramp, (2.0 + 1e-15, 2.5)));
+        let wave: Vec<(f64, f64)> = (0..=40).map(|k| f64::from(k) * 0.05).map(|t| (t, t.sin())).collect();
+        assert!(!turn(&wave, (0.01, 1.3)) && turn(&wave, (1.3, 1.7)) && !turn(&wave, (1.7, 1.99)));
+        assert!(!turn(&[(0.0, 0.0), (0.0, 0.0)], (0.0, 1.0)) && turn(&[(0.0, 1.0)], (0.0, 1.0)));
     }
 
     #[test]

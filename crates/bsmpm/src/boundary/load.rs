@@ -11,7 +11,7 @@ use super::surface::{Anchors, Attachment, Surface, SurfacePoint};
 use crate::error::StepError;
 use crate::grid::{Contributions, Grid};
 use crate::parallel::Halo;
-use crate::schedule::between;
+use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 use follower::FollowerLoads;
 
@@ -47,10 +47,10 @@ impl<const D: usize> Load<D> {
         !self.amplitude.is_empty() && self.amplitude.iter().all(|row| row.1 == 0.0)
     }
 
-    /// Those at which its course turns, s (or pseudo-time).
-    pub(super) fn times(&self) -> impl Iterator<Item = f64> {
-        let ramp = (self.amplitude.is_empty() && self.ramp > 0.0).then_some(self.ramp);
-        self.amplitude.iter().map(|row| row.0).chain(ramp)
+    /// Whether its course turns sharply in a step.
+    pub(super) fn turns(&self, step: (f64, f64)) -> bool {
+        let rows = if self.amplitude.is_empty() { &[(self.ramp, 1.0)][..] } else { &self.amplitude };
+        turns(rows, 0.0, f64::abs, step)
     }
 
     /// Share of the load that acts at time `t`.

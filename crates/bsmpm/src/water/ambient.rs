@@ -63,9 +63,9 @@ impl Ambient {
         }
     }
 
-    /// Whether a row of it lies in a step.
+    /// Whether it turns sharply in a step.
     pub fn turns(&self, step: (f64, f64)) -> bool {
-        turns(self.levels().into_iter().flatten().map(|row| row.0), step)
+        self.levels().iter().any(|rows| turns(rows, rows.first().map_or(0.0, |row| row.1), f64::abs, step))
     }
 
     /// Whether it rises or falls.

@@ -52,8 +52,7 @@ impl Differences {
     }
 }
 
-/// Whether what drives the flow goes another way, or jumps, from a time on that lies in a step: then the last one tells
-/// nothing of it.
+/// Whether what drives the flow turns sharply in a step: then the last one tells nothing of it.
 fn turns<K, const D: usize>(model: &Model<K, D>, step: (f64, f64)) -> bool {
     let of_water = model
         .water

@@ -54,10 +54,9 @@ impl<const D: usize> Flow<D> {
         self.drains.iter().any(seeps) || self.inflows.iter().any(|inflow| inflow.acts && inflow.runs_off)
     }
 
-    /// Whether what is given at a surface that water crosses now goes another way, or jumps, from a row on that lies in
-    /// a step.
+    /// Whether what is given at a surface that water crosses now turns sharply in a step.
     pub fn turns(&self, step: (f64, f64)) -> bool {
-        let turn = |course: &Course| turns(course.times(), step);
+        let turn = |course: &Course| turns(&course.0, course.at(0.0), f64::abs, step);
         let given = |given: &Given| given.course().is_some_and(turn);
         self.drains.iter().any(|drain| drain.acts && given(&drain.given))
             || self.faces.iter().any(|face| face.acts && given(&face.given))
