@@ -249,8 +249,8 @@ fn placed_at<const D: usize>(lower: [f64; 3], x: &Vector<D>) -> [f64; 3] {
     std::array::from_fn(|axis| lower[axis] + x.get(axis).copied().unwrap_or(0.0))
 }
 
-/// Steps and the times that they must hit: frames, pictures, profiles, checks and stages, and where water flows those at
-/// which something given turns.
+/// Steps and the times that they must hit: frames, pictures, profiles, checks and stages, and where water flows those
+/// at which something given turns.
 pub fn schedule(case: &Case) -> Schedule {
     let checks = case.checks.iter().map(|check| check.at);
     let stages = case.stages.iter().map(|stage| stage.at);

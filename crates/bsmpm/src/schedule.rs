@@ -19,8 +19,8 @@ where
     Some(if is_later { before.1 + (after.1 - before.1) * ((t - before.0) / (after.0 - before.0)) } else { after.1 })
 }
 
-/// Whether what is given by rows turns sharply in a step, its start included and its end not: where the slope changes by
-/// more than half of the steeper one. Rows as of [`between`], at the last of which they stay.
+/// Whether what is given by rows turns sharply in a step, its start included and its end not: where the slope changes
+/// by more than half of the steeper one. Rows as of [`between`], at the last of which they stay.
 pub fn turns<T>(rows: &[(f64, T)], start: T, size: impl Fn(T) -> f64, (t, end): (f64, f64)) -> bool
 where
     T: Copy + Sub<Output = T> + Mul<f64, Output = T>,
