@@ -16,6 +16,7 @@ pub(super) struct AroundStrip<'a> {
     /// of the strength reduction
     pub(super) factor: Option<f64>,
     pub(super) end: Option<f64>,
+    /// of steps that may pass over rows
     pub(super) dt: Option<f64>,
 }
 

@@ -44,11 +44,11 @@ impl Differences {
         before.map_or(Self::EULER, |flowed| Self::of_second_order(end - t, flowed.dt))
     }
 
-    /// What comes in at a given rate, per unit of it and time of the step from `t` to `end` that flows count for: as
-    /// much as lets all that has come in be the rate's integral, however it turns.
-    pub fn of_rate(&self, rate: &Course, (t, end): (f64, f64)) -> f64 {
+    /// The rate that counts in the step of `dt` from `t` for a given one: with it all that has come in is the integral
+    /// of that, however it turns.
+    pub fn of_rate(&self, rate: &Course, (t, dt): (f64, f64)) -> f64 {
         let before = self.last * rate.integral((t - self.before, t));
-        (rate.integral((t, end)) - before) / (self.now * (end - t))
+        (rate.integral((t, t + dt)) - before) / (self.now * dt)
     }
 }
 
@@ -97,7 +97,7 @@ mod tests {
         let (mut t, mut before, mut inward) = (0.0, [0.0, 0.0], 0.0);
         for dt in [0.7, 1.0, 0.31, 0.4, 0.6, 1.5, 0.5] {
             let of = if before[0] > 0.0 { Differences::of_second_order(dt, before[0]) } else { Differences::EULER };
-            let step = of.last * before[1] + of.now * dt * of.of_rate(&rate, (t, t + dt));
+            let step = of.last * before[1] + of.now * dt * of.of_rate(&rate, (t, dt));
             (t, before, inward) = (t + dt, [dt, step], inward + step);
             assert!((inward - rate.integral((0.0, t))).abs() < 1e-14, "{t} {inward}");
         }

@@ -72,13 +72,13 @@ impl WaterCrossing {
 }
 
 impl Drainage {
-    /// Of a step from `t` to `end` that takes these `differences`, and the points at its start; by the functions of
+    /// Of a step of `dt` from `t` that takes these `differences`, and the points at its start; by the functions of
     /// degree q - 1 that `counts` says. `still` is the pressure of the still water at the end, Pa. One reduction,
     /// before the first step three. Fails on all ranks where a surface is on material that lets no water through.
     pub fn at<K, const D: usize>(
         model: &Model<K, D>,
         points: &Points<D>,
-        ((t, end), differences): ((f64, f64), Differences),
+        ((t, dt), differences): ((f64, f64), Differences),
         counts: impl Fn(usize) -> bool,
         still: impl Fn(&Vector<D>) -> f64,
         halo: &dyn Halo,
@@ -90,7 +90,8 @@ impl Drainage {
         if of == [0; 2] || flow.motion != Motion::Flows {
             return Ok(Self { of, ..Self::default() });
         }
-        let (grid, offsets, duration) = (&model.grid, model.grid.lowered_offsets(), differences.now * (end - t));
+        let (grid, offsets) = (&model.grid, model.grid.lowered_offsets());
+        let (end, duration) = (t + dt, differences.now * dt);
         let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo).water;
         let mut places = places(flow, points, &anchors, halo).into_iter();
         let (mut outlets, mut torn) = (Vec::new(), vec![0.0; of[0] + of[1]]);
@@ -105,6 +106,8 @@ impl Drainage {
                 return Err(StepError::Undrained { drain: surface, points: tight });
             }
             torn[surface] = cells_apart(grid, starts, &here);
+            let inflow = surface.checked_sub(flow.drains.len()).map(|number| &flow.inflows[number]);
+            let rate = inflow.map_or(0.0, |inflow| differences.of_rate(&inflow.rate, (t, dt)));
             for (place, SurfacePoint { area, .. }) in here.iter().zip(starts) {
                 let attachment = Attachment::lowered_at(grid, &offsets, &counts, &place.x);
                 let Some(attachment) = attachment else { continue };
@@ -120,10 +123,8 @@ impl Drainage {
                         WaterCrossing { conductance, given, one_way, ..none }
                     }
                     None => {
-                        let inflow = &flow.inflows[surface - flow.drains.len()];
-                        let rain =
-                            WaterCrossing { inflow: through * differences.of_rate(&inflow.rate, (t, end)), ..none };
-                        if inflow.runs_off {
+                        let rain = WaterCrossing { inflow: through * rate, ..none };
+                        if inflow.is_some_and(|inflow| inflow.runs_off) {
                             WaterCrossing { conductance, given: dry, one_way: true, ..rain }
                         } else {
                             rain

@@ -140,7 +140,7 @@ impl<const D: usize> Pores<D> {
             still(&Vector::from_fn(|axis, _| place(axis)))
         });
         let at_nodes = at_nodes.collect();
-        let drainage = Drainage::at(model, points, ((t, end), differences), |node| seen[node], still, halo)?;
+        let drainage = Drainage::at(model, points, ((t, dt), differences), |node| seen[node], still, halo)?;
         let takes: Vec<f64> = sums.chunks_exact(SUMS).map(|of| of[2]).collect();
         let ties = Ties::of(&model.grid, &seen, &takes);
         let limit = |node: usize| if free[node] { (ROUND_OFF * sums[SUMS * node]).powi(2) } else { 0.0 };
