@@ -13,6 +13,7 @@ use bsmpm::exact::{Exact, WORDS};
 use bsmpm::grid::{Contributions, Grid};
 use bsmpm::parallel::{Halo, OwnedNodes};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
+use mpi::datatype::PartitionMut;
 use mpi::point_to_point::{Destination, Source};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::ops::Range;
@@ -299,6 +300,32 @@ impl Halo for MpiHalo {
         let own = numbers.to_vec();
         self.timers.traffic().count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
         self.world.all_reduce_into(&own[..], numbers, SystemOperation::max());
+    }
+
+    fn gather(&self, numbers: &[f64]) -> Vec<f64> {
+        if self.world.size() == 1 {
+            return numbers.to_vec();
+        }
+        let _timed = self.timers.time("reduction");
+        self.timers.traffic().count(TrafficKind::Gathering, 0, size_of_val(numbers));
+        let mut counts = vec![0; self.world.size().unsigned_abs() as usize];
+        self.world.all_gather_into(&(numbers.len() as i32), &mut counts[..]);
+        let starts: Vec<i32> = counts
+            .iter()
+            .scan(0, |sum, count| {
+                *sum += count;
+                Some(*sum - count)
+            })
+            .collect();
+        let mut all = vec![0.0; counts.iter().sum::<i32>().unsigned_abs() as usize];
+        let mut parts = PartitionMut::new(&mut all[..], &counts[..], &starts[..]);
+        self.world.all_gather_varcount_into(numbers, &mut parts);
+        all
+    }
+
+    fn is_private(&self, node: usize) -> bool {
+        let is_seen = |other: &Neighbour| other.nodes.0.iter().any(|run| run.contains(&node));
+        self.owned.contains(node) && !self.neighbours.iter().any(is_seen)
     }
 
     fn is_interrupted(&self) -> bool {

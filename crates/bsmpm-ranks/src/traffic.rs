@@ -17,14 +17,23 @@ pub enum TrafficKind {
     Factor,
     /// numbers combined over all ranks
     Reduction,
+    /// numbers of all ranks that every rank gets
+    Gathering,
     /// points and nodal values that change their rank
     Migration,
 }
 
 impl TrafficKind {
     /// All of them, in the order of [`TrafficCounts`].
-    pub const ALL: [Self; 6] =
-        [Self::HaloSum, Self::HaloMax, Self::HaloShare, Self::Factor, Self::Reduction, Self::Migration];
+    pub const ALL: [Self; 7] = [
+        Self::HaloSum,
+        Self::HaloMax,
+        Self::HaloShare,
+        Self::Factor,
+        Self::Reduction,
+        Self::Gathering,
+        Self::Migration,
+    ];
 
     /// Its name in files.
     pub fn name(self) -> &'static str {
@@ -34,6 +43,7 @@ impl TrafficKind {
             Self::HaloShare => "halo share",
             Self::Factor => "factor",
             Self::Reduction => "reduction",
+            Self::Gathering => "gathering",
             Self::Migration => "migration",
         }
     }
@@ -44,15 +54,15 @@ impl TrafficKind {
 pub struct Count {
     /// exchanges or reductions that it took part in
     pub calls: u64,
-    /// messages that it sent to another rank; a reduction counts none
+    /// messages that it sent to another rank; a reduction or gathering counts none
     pub messages: u64,
-    /// bytes of them; of a reduction, those of its own numbers
+    /// bytes of them; of a reduction or gathering, those of its own numbers
     pub bytes: u64,
 }
 
 /// What one rank did, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TrafficCounts([Count; 6]);
+pub struct TrafficCounts([Count; 7]);
 
 impl TrafficCounts {
     /// Those of one kind.
@@ -129,7 +139,7 @@ mod tests {
         assert_eq!((counts.sent(), counts.since(&before).sent()), ([5, 740], [3, 580]));
         assert_eq!(counts.since(&before).of(TrafficKind::Reduction).calls, 1);
         let numbers: Vec<f64> = counts.numbers().collect();
-        let told = [[2.0, 4.0, 240.0], [0.0; 3], [0.0; 3], [0.0; 3], [1.0, 0.0, 24.0], [1.0, 1.0, 500.0]];
+        let told = [[2.0, 4.0, 240.0], [0.0; 3], [0.0; 3], [0.0; 3], [1.0, 0.0, 24.0], [0.0; 3], [1.0, 1.0, 500.0]];
         assert_eq!(numbers, told.concat());
     }
 }

@@ -32,6 +32,7 @@ use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::extension::ExtendedSplines;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
 
@@ -230,6 +231,8 @@ pub struct Solver {
     /// What points weigh in integrals of the stress; fitted in quasi-static analysis with linear or quadratic splines
     /// only.
     pub quadrature: Quadrature,
+    /// Whether functions of nearly empty cells are tied to those of full ones; in quasi-static analysis only.
+    pub extended_splines: ExtendedSplines,
     /// -  coefficient of the soft background; 0: none
     pub background: f64,
     /// What the background resists.

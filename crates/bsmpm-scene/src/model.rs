@@ -64,6 +64,7 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
         stabilisation: case.stabilisation,
         groups: groups_of(case, &materials),
         quadrature: case.solver.quadrature,
+        extended_splines: case.solver.extended_splines,
         background,
         criteria: criteria(case),
         damping: damping(&materials),

@@ -184,6 +184,15 @@ impl<const D: usize> Boundary<D> {
         self.supports.iter().any(|support| support.contact.is_some())
     }
 
+    /// Lower and upper faces of every axis that have contact.
+    pub fn contact_faces(&self) -> [[bool; 2]; D] {
+        let mut faces = [[false; 2]; D];
+        for support in self.supports.iter().filter(|support| support.contact.is_some()) {
+            faces[support.axis][usize::from(support.upper)] = true;
+        }
+        faces
+    }
+
     /// Whether some strip has.
     pub fn has_strip_contact(&self) -> bool {
         self.strips.iter().any(|strip| strip.contact.is_some())

@@ -3,6 +3,7 @@
 //! Positions are relative to the grid's lower corner: at 1e6 m an increment of 1e-9 m would lose 5 % of itself.
 
 pub mod contributions;
+pub mod extension;
 pub(crate) mod occupied;
 mod paired;
 pub mod room;
@@ -284,6 +285,22 @@ impl<const D: usize> Grid<D> {
     pub fn number_of(&self, node: usize) -> usize {
         let node = self.node_at(node);
         (1..D).fold(node[0], |number, axis| number * self.axes[axis].functions() + node[axis])
+    }
+
+    /// The node of the window that has a number among those of the whole grid; `None` outside the window.
+    pub fn node_of_number(&self, number: usize) -> Option<usize> {
+        self.node_index(&self.place_of_number(number))
+    }
+
+    /// Node along each axis (global) by its number among those of the whole grid.
+    pub fn place_of_number(&self, mut number: usize) -> [usize; D] {
+        let mut node = [0; D];
+        for axis in (1..D).rev() {
+            node[axis] = number % self.axes[axis].functions();
+            number /= self.axes[axis].functions();
+        }
+        node[0] = number;
+        node
     }
 
     /// Lower corner and edge lengths of a cell, m.

@@ -140,6 +140,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         }
         solver.solve_to(SOLVED, &residual.f_oob, &mut du)?;
         u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
+        start.nodes.extend(&model.grid, &mut u, halo);
         strains = transfer::gradients::<K, D, _>((&start.shape, &points.x), &u, |_, grad| {
             Symmetric::of(&K::gradient::<f64>(&grad))
         });
@@ -247,10 +248,11 @@ impl<const D: usize> Undeformed<D> {
             let (loads, still) = (&model.boundary.loads[..], vec![0.0; model.grid.nodes() * D]);
             let traction =
                 followers.tractions::<K>((loads, &model.grid), points, (&still, &|_| Tensor::identity()), halo);
-            let force = followers.forces(&traction, &model.grid, halo);
+            let mut force = followers.forces(&traction, &model.grid, halo);
+            nodes.reduce(&mut [&mut force], halo);
             nodes.f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
         }
-        let movable = nodes.contacts.movable(&nodes.free);
+        let movable = nodes.movable();
         let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, 0.0));
         Ok(Self { shape, nodes, grips })
     }
@@ -276,7 +278,7 @@ fn elastic_residual<K: Kinematics<D>, const D: usize>(
         let tau = stress_of(&elastic_at(problem.model, problem.points, p), &strains[p]);
         K::flux(&tau, &Tensor::identity()) * volume[p]
     });
-    Balance::of(problem, (u, &|_| Tensor::identity()), &problem.halo.sum(&f_int), 0)
+    Balance::of(problem, (u, &|_| Tensor::identity()), problem.halo.sum(&f_int), 0)
 }
 
 fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, p: usize) -> Elastic {

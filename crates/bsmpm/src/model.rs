@@ -12,6 +12,7 @@ use crate::points::Points;
 use crate::quadrature::Quadrature;
 use crate::schedule::between;
 use crate::stabilisation::{Grouped, Groups, Stabilisation};
+use crate::step::extension::ExtendedSplines;
 use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
@@ -103,6 +104,8 @@ pub struct Model<K, const D: usize> {
     pub groups: Groups,
     /// What points weigh in the integrals of the stress.
     pub quadrature: Quadrature,
+    /// Whether functions of nearly empty cells are tied to those of full ones.
+    pub extended_splines: ExtendedSplines,
     /// Soft background in nearly empty cells, if any.
     pub background: Option<Background>,
     /// Convergence.

@@ -69,6 +69,15 @@ pub trait Halo {
     fn total(&self, sums: &[Exact]) -> Vec<f64>;
     /// Replaces each number by its largest over the ranks.
     fn maximum(&self, numbers: &mut [f64]);
+    /// The numbers of all ranks, those of one rank behind those of the rank before it; ranks may have different counts.
+    fn gather(&self, numbers: &[f64]) -> Vec<f64> {
+        numbers.to_vec()
+    }
+    /// Whether a node of the window is this rank's own and in no other rank's window. On the ranks of one cut these
+    /// nodes are those of a box.
+    fn is_private(&self, _node: usize) -> bool {
+        true
+    }
     /// Whether somebody outside wants the step to be given up. Changes in [`reduce`](Self::reduce) and
     /// [`total`](Self::total) only, so that all ranks see it between the same two reductions.
     fn is_interrupted(&self) -> bool {

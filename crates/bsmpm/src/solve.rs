@@ -57,6 +57,9 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         let method = if method == Nonlinear::Auto { Nonlinear::Newton } else { method };
         found = search(problem, method, zero, (solver, counts)).map(|found| Found { first_guess: false, ..found });
     }
+    if let Ok(found) = &mut found {
+        problem.nodes.extend(&problem.model.grid, &mut found.u, problem.halo);
+    }
     found
 }
 

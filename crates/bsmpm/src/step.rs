@@ -6,12 +6,14 @@ pub mod blocks;
 pub mod commit;
 pub mod coupling;
 pub mod damping;
+pub mod extension;
 pub mod inertia;
 pub mod mass;
 pub mod newmark;
 pub mod nodes;
 pub mod outflow;
 pub mod problem;
+pub mod reduced_system;
 pub mod report;
 pub mod residual;
 pub mod smooth;
@@ -59,7 +61,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     {
         inertia.newmark = Newmark::of_the_end();
     }
-    let movable = nodes.contacts.movable(&nodes.free);
+    let movable = nodes.movable();
     let mut grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, dt));
     let found = solve::contact::find(model, &shape, &mut nodes, (&mut grips, points), guess, (halo, solver), counts)?; // (3)-(9)
     let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };

@@ -9,6 +9,7 @@ use crate::words::{Accuracy, AnalysisType, C0Lines, Factor, Geometry, Ksp, Linea
 use bsmpm::background::{Extent, Kind as Background};
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::extension::ExtendedSplines;
 use bsmpm::step::mass::MassMatrix;
 use std::ops::Bound::{Excluded, Included};
 
@@ -173,6 +174,12 @@ static SOLVER: Table = Table {
             Choice(Quadrature::WORDS),
             Default("\"points\""),
             "what points weigh in integrals of the stress; fitted (quasi-static, not cubic): splines inside bodies are exact",
+        ),
+        key(
+            "extension",
+            Choice(ExtendedSplines::WORDS),
+            Optional,
+            "extended B-splines at the edge of bodies; quasi-static linear, dynamic off",
         ),
         key(
             "background",

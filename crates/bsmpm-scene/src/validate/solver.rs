@@ -9,6 +9,7 @@ use crate::words::{Factor, Ksp, LinearSolver, Pc, Word};
 use bsmpm::background::{Extent, Kind};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
+use bsmpm::step::extension::ExtendedSplines;
 
 /// The solver, for a grid and its materials.
 pub(super) fn read(
@@ -19,6 +20,7 @@ pub(super) fn read(
 ) -> Option<Solver> {
     let solver = root.record("solver")?;
     let quadrature = weights(solver, regime, grid.map(|grid| grid.order), report);
+    let extended_splines = extended_splines(solver, regime, report);
     let (kind, background) = background(solver, regime, grid.map(|grid| grid.order), report);
     let poisson = materials.unwrap_or_default().iter().map(|material| material.material.elastic().poisson);
     let unknowns = grid.map_or(0, |grid| grid.dims() as u128 * estimate::nodes(grid));
@@ -33,6 +35,7 @@ pub(super) fn read(
         force_tolerance: solver.number("force_tolerance")?,
         max_iterations: usize::try_from(solver.count("max_iterations")?).ok()?,
         quadrature: quadrature?,
+        extended_splines: extended_splines?,
         background: background?,
         background_kind: kind?,
         background_cells: cells(solver, kind?)?,
@@ -65,6 +68,28 @@ fn weights(
         return None;
     }
     Some(Quadrature::Fitted)
+}
+
+const EXTENSION: &str = "extension";
+
+/// Whether functions of nearly empty cells are tied: in quasi-static analysis unless the case says otherwise.
+fn extended_splines(solver: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<ExtendedSplines> {
+    let given = solver.word_if_given(EXTENSION)?;
+    match (regime?, given) {
+        (Regime::Dynamic, Some(ExtendedSplines::Linear)) => {
+            let message = "\"linear\" is for quasi-static analysis: in dynamics it throws layers thinner than a cell ahead \
+                           of the material behind them; use \"off\"";
+            solver.error(EXTENSION, message, report);
+            None
+        }
+        (Regime::Dynamic, _) => Some(ExtendedSplines::Off),
+        (Regime::QuasiStatic, Some(given)) => Some(given),
+        (Regime::QuasiStatic, None) => {
+            let reason = "functions of nearly empty cells have no stiffness of their own in a quasi-static analysis";
+            report.note("solver.extension", ExtendedSplines::Linear.word(), reason);
+            Some(ExtendedSplines::Linear)
+        }
+    }
 }
 
 /// What the background resists, and its coefficient.

@@ -3,6 +3,7 @@
 use bsmpm::background::{Extent, Kind};
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm::step::extension::ExtendedSplines;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::water::flow::PermeabilityLaw;
 
@@ -23,6 +24,11 @@ words! { Stabilisation {
 words! { Quadrature {
     Points = "points": "points weigh their own volumes",
     Fitted = "fitted": "volumes that integrate splines inside bodies exactly",
+} }
+
+words! { ExtendedSplines {
+    Off = "off": "all functions are unknowns",
+    Linear = "linear": "functions of nearly empty cells continue the displacement of the nearest full cell linearly",
 } }
 
 words! { PermeabilityLaw {

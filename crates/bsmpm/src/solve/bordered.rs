@@ -23,6 +23,7 @@ impl<'a, const D: usize> Bordered<'a, D> {
         let (rigid, halo) = (&problem.nodes.rigid, problem.halo);
         let (mut columns, blocks) = rigid.coupling(&problem.model.grid, halo);
         for column in &mut columns {
+            problem.nodes.reduce(&mut [&mut column[..]], halo);
             column.iter_mut().zip(&problem.nodes.free).filter(|(_, free)| !**free).for_each(|(c, _)| *c = 0.0);
         }
         let motions: Vec<(usize, usize)> = rigid.free_motions().collect();

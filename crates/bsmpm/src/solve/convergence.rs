@@ -163,8 +163,10 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D
     if problem.model.boundary.strips.is_empty() && rigid.is_empty() {
         return work.abs();
     }
-    let mut penalty = problem.grips.energy(du);
-    penalty += &rigid.energy(du, problem.halo);
+    let mut du = du.to_vec();
+    problem.nodes.extend(&problem.model.grid, &mut du, problem.halo);
+    let mut penalty = problem.grips.energy(&du);
+    penalty += &rigid.energy(&du, problem.halo);
     let penalty = problem.halo.total(&[penalty]);
     (work - penalty[0]).abs()
 }

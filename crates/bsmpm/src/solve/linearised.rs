@@ -14,10 +14,12 @@ use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::problem::Problem;
+use crate::step::reduced_system::ReducedSystem;
 use crate::step::residual::Residual;
 use crate::step::trial::Trial;
 use crate::tensor::{Tensor, Vector};
 use crate::water::linearised::LinearisedWater;
+use std::borrow::Cow;
 
 /// The derivative at one displacement.
 pub struct Linearised<'a, K: Kinematics<D>, const D: usize> {
@@ -138,6 +140,11 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
         let Problem { shape, nodes, points, halo, .. } = *self.problem;
         let ((v, v_p), (out, out_p)) = (v.split_at(nodes.free.len()), out.split_at_mut(nodes.free.len()));
+        let mut extended = Cow::Borrowed(v);
+        if let Some(extension) = &nodes.extension {
+            extension.extend(&self.problem.model.grid, extended.to_mut(), halo);
+        }
+        let v = &extended[..];
         let grad = transfer::gradients::<K, D, _>((shape, &points.x), v, |_, grad| grad);
         let rate = self.dilation.as_ref().and_then(|dilation| {
             let trace: Vec<f64> = dilation.iter().zip(&grad).map(|(at, grad)| at.trace.dot(grad)).collect();
@@ -172,6 +179,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         self.problem.grips.multiply(v, &mut force);
         nodes.rigid.multiply(v, &mut force, halo);
         out.copy_from_slice(&halo.sum(&force));
+        nodes.reduce(&mut [&mut *out], halo);
         if let Some(inertia) = &nodes.inertia {
             let (factor, moved) = (inertia.factor(), v);
             let alike = inertia.moving.is_empty();
@@ -190,6 +198,12 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// Assembles and factorises the matrix that preconditions the product: all of it, but for F-bar's average where
     /// that reaches farther than the matrix. One exchange with the neighbours where it does not.
     pub fn factorise(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
+        let Problem { model, nodes, halo, .. } = *self.problem;
+        let Some(extension) = &nodes.extension else { return self.factorise_in(solver) };
+        self.factorise_in(&mut ReducedSystem::new(solver, extension, &model.grid, halo))
+    }
+
+    fn factorise_in(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
         let Problem { shape, nodes, points, .. } = *self.problem;
         solver.begin(&nodes.free);
         let size = shape.offsets().len();

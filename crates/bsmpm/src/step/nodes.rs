@@ -6,7 +6,7 @@ use crate::boundary::contact::Contacts;
 use crate::boundary::load::{self, follower::FollowerLoads};
 use crate::boundary::rigid::{RigidContacts, Surroundings};
 use crate::error::StepError;
-use crate::grid::{Shape, transfer};
+use crate::grid::{Grid, Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime, Weighting};
 use crate::nodal::Nodal;
@@ -15,6 +15,7 @@ use crate::points::Points;
 use crate::quadrature::{self, Quadrature};
 use crate::stabilisation::Stabilisation;
 use crate::step::apart::Apart;
+use crate::step::extension::Extension;
 use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
 use crate::tensor::Vector;
@@ -46,7 +47,7 @@ pub struct Nodes<const D: usize> {
     pub weight: Vec<f64>,
     /// present in dynamics; then `weight` is the mass
     pub inertia: Option<Inertia>,
-    /// N  external force at t + dt, D numbers a node, but for loads that follow the surface
+    /// N  external force at t + dt, D numbers a node, reduced to inner functions, but for loads that follow the surface
     pub f_ext: Vec<f64>,
     /// those
     pub followers: FollowerLoads<D>,
@@ -68,6 +69,8 @@ pub struct Nodes<const D: usize> {
     pub pores: Option<Pores<D>>,
     /// soft background of the step
     pub background: Option<Blocks>,
+    /// functions that are tied to others, where there are any
+    pub extension: Option<Extension<D>>,
     /// active nodes, over all ranks
     pub active_nodes: usize,
     /// unknowns, over all ranks
@@ -116,8 +119,9 @@ impl<const D: usize> Nodes<D> {
         let volume = fitted.as_deref().unwrap_or(&points.volume);
         let (active, stiff) = supported(shape, volume, background.as_ref(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
-        let free: Vec<bool> =
+        let mut free: Vec<bool> =
             velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c))).collect();
+        let extension = Extension::of::<K>(model, shape, points, &active, &mut free, halo);
         let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
         let contacts = match model.boundary.has_contact() {
             true => Contacts::of((&model.boundary, &model.grid), (shape, points), &free, (t, last), halo),
@@ -179,6 +183,7 @@ impl<const D: usize> Nodes<D> {
             inertia,
             free,
             background,
+            extension,
             active_nodes: 0,
             unknowns: 0,
             massless_nodes: 0,
@@ -189,9 +194,35 @@ impl<const D: usize> Nodes<D> {
             averages,
             fitted,
         };
+        let mut f_ext = std::mem::take(&mut mapped.f_ext);
+        mapped.reduce(&mut [&mut f_ext], halo);
+        mapped.f_ext = f_ext;
         mapped.meet();
         mapped.count(halo);
         Ok(mapped)
+    }
+
+    /// The components that move: unknowns, those that statuses of contact decide, and those that are tied to others.
+    pub fn movable(&self) -> Vec<bool> {
+        let mut movable = self.contacts.movable(&self.free);
+        if let Some(extension) = &self.extension {
+            movable.iter_mut().enumerate().for_each(|(component, movable)| *movable |= extension.ties(component));
+        }
+        movable
+    }
+
+    /// Sets the tied components of a nodal displacement or its change, D numbers a node, see [`Extension::extend`].
+    pub fn extend(&self, grid: &Grid<D>, u: &mut [f64], halo: &dyn Halo) {
+        if let Some(extension) = &self.extension {
+            extension.extend(grid, u, halo);
+        }
+    }
+
+    /// Moves nodal forces, D numbers a node, from tied components to unknowns, see [`Extension::reduce`].
+    pub fn reduce(&self, forces: &mut [&mut [f64]], halo: &dyn Halo) {
+        if let Some(extension) = &self.extension {
+            extension.reduce(forces, halo);
+        }
     }
 
     /// Holds, stops and frees the nodes on faces with contact as their statuses say.

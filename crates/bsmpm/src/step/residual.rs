@@ -60,6 +60,11 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
     pub fn of(problem: &Problem<'_, K, D>, x: &[f64]) -> Self {
         let Problem { model, shape, nodes, points, halo, .. } = *problem;
         let (u, p) = x.split_at(nodes.free.len());
+        let mut extended = Cow::Borrowed(u);
+        if let Some(extension) = &nodes.extension {
+            extension.extend(&model.grid, extended.to_mut(), halo);
+        }
+        let u = &extended[..];
         let mut trial = Trial::of(model, shape, nodes, points, u, halo);
         let water = nodes.pores.as_ref().map(|pores| match p {
             [] => WaterBalance::of((problem, pores), &mut trial, &vec![0.0; pores.free.len()]),
@@ -69,7 +74,7 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, u, &mut f_int);
         }
-        let balance = Balance { water, ..Balance::of(problem, (u, &|p| trial.dF(p)), &halo.sum(&f_int), inverted) };
+        let balance = Balance { water, ..Balance::of(problem, (u, &|p| trial.dF(p)), halo.sum(&f_int), inverted) };
         Self { trial, balance, first_inverted }
     }
 }
@@ -160,11 +165,11 @@ impl<K: Kinematics<D>, const D: usize> Fluxes<'_, K, D> {
 
 impl Balance {
     /// Balance of an internal force that is summed over the ranks, with `inverted` points on this one, under the
-    /// displacement `u` that deforms points by `dF`.
+    /// displacement `u`, extended, that deforms points by `dF`.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         (u, dF): (&[f64], &dyn Fn(usize) -> Tensor),
-        f_int: &[f64],
+        mut f_int: Vec<f64>,
         inverted: u64,
     ) -> Self {
         let f_ext = &*external_force(problem, (u, dF));
@@ -175,7 +180,11 @@ impl Balance {
             problem.nodes.rigid.add_forces(u, &mut held, problem.halo);
             f_strips = problem.halo.sum(&held);
         }
-        let forces = Forces::of(problem, u, (f_ext, f_int, &f_strips));
+        match f_strips.is_empty() {
+            true => problem.nodes.reduce(&mut [&mut f_int], problem.halo),
+            false => problem.nodes.reduce(&mut [&mut f_int, &mut f_strips], problem.halo),
+        }
+        let forces = Forces::of(problem, u, (f_ext, &f_int, &f_strips));
         let soft = problem.nodes.background.is_some();
         let squares = |force: &[f64]| over_layers(problem.halo, D, |c| force[c].powi(2));
         let supporting = |c: usize| forces.reaction[c].powi(2) + f_strips.get(c).copied().unwrap_or(0.0).powi(2);
@@ -235,7 +244,8 @@ fn external_force<'a, K: Kinematics<D>, const D: usize>(
     let mut f_ext = Cow::Borrowed(&nodes.f_ext[..]);
     if !nodes.followers.is_empty() {
         let traction = nodes.followers.tractions::<K>((&model.boundary.loads, &model.grid), points, moved, halo);
-        let force = nodes.followers.forces(&traction, &model.grid, halo);
+        let mut force = nodes.followers.forces(&traction, &model.grid, halo);
+        nodes.reduce(&mut [&mut force], halo);
         f_ext.to_mut().iter_mut().zip(force).for_each(|(all, force)| *all += force);
     }
     f_ext

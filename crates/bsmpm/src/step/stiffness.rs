@@ -19,6 +19,7 @@ use crate::step::coupling::{Coupling, Dilations, Raised, Share};
 use crate::step::damping::Damping;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
+use crate::step::reduced_system::ReducedSystem;
 use crate::step::trial::Trial;
 use crate::tensor::{Tensor, Vector};
 use nalgebra::SMatrix;
@@ -27,6 +28,16 @@ use rayon::prelude::*;
 /// Assembles K_0 patch by patch into `solver` and factorises it: at the state `at`, or, without any, of elastic
 /// material whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    at: Option<&Trial<K, D>>,
+    solver: &mut dyn LinearSolver,
+) -> Result<(), SolveError> {
+    let Some(extension) = &problem.nodes.extension else { return assemble_into(problem, at, solver) };
+    let mut reduced = ReducedSystem::new(solver, extension, &problem.model.grid, problem.halo);
+    assemble_into(problem, at, &mut reduced)
+}
+
+fn assemble_into<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     at: Option<&Trial<K, D>>,
     solver: &mut dyn LinearSolver,

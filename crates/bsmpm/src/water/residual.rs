@@ -216,6 +216,7 @@ pub fn pressing<K: Kinematics<D>, const D: usize>(
     };
     let force = crate::grid::transfer::divergence::<K, D>((problem.shape, &problem.points.x), flux);
     let mut force = problem.halo.sum(&force);
+    problem.nodes.reduce(&mut [&mut force], problem.halo);
     force.iter_mut().zip(&problem.nodes.free).filter(|(_, free)| !**free).for_each(|(force, _)| *force = 0.0);
     force
 }

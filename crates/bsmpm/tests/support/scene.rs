@@ -16,6 +16,7 @@ use bsmpm::points::{Points, Seed};
 use bsmpm::quadrature::Quadrature;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::{Groups, Stabilisation};
+use bsmpm::step::extension::ExtendedSplines;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
@@ -67,6 +68,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             stabilisation: Stabilisation::None,
             groups: Groups::default(),
             quadrature: Quadrature::Points,
+            extended_splines: ExtendedSplines::Off,
             background: None,
             criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
             damping: Vec::new(),

@@ -1,0 +1,192 @@
+//! Extended B-splines: functions whose support holds too little material are continued from a well-filled cell.
+//!
+//! A spline function that reaches only into nearly empty cells ("outer") has next to no stiffness, and its forces are
+//! integrated badly. Its coefficient is therefore no unknown: it is tied to the functions of the nearest full cell, its
+//! home, so that the displacement goes on linearly beyond that cell (Höllig, Reif and Wipper, 2001, SIAM J. Numer. Anal.
+//! 39, 442-462; Höllig and Reif, 2003, Numer. Math. 94, 515-538, for graded knots):
+//!
+//! ```text
+//! u_j = sum_i e_ij u_i,   e_ij = product over the axes of e_ij^axis,
+//! e_ij^axis = delta_ij                      where function j belongs to the home along this axis,
+//!             N_i(s) + N_i'(s) (g_j - s)    elsewhere,
+//! ```
+//!
+//! g_j the Greville abscissa of function j, s the point of the home's interval that is nearest to g_j. On any knots a
+//! linear field keeps its coefficients, so sum_i e_ij = 1 and sum_i e_ij g_i = g_j: forces and moments are conserved.
+//!
+//! This module knows the grid only. [`step::extension`](crate::step::extension) finds outer functions and applies E.
+
+use super::{Grid, KnotVector};
+
+/// Largest distance, in cells along an axis, between an outer function's support and its home.
+pub const REACH: usize = 3;
+
+/// Resolution of the distance by which equally near cells are ordered, in squared cells: round-off must not decide.
+const RESOLUTION: f64 = 1e-6;
+
+/// How near a cell is to a function; smaller is nearer, and equal distances are ordered by the number of the cell.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Nearness {
+    /// squared distance in cells between the support and the cell
+    pub apart: f64,
+    /// squared distance between the Greville abscissa and the middle of the cell in edges of the cell, rounded
+    pub off_centre: f64,
+    /// number of the cell in the whole grid
+    pub cell: f64,
+}
+
+/// Where functions may have their homes: which side of the C0 lines they are on, and which faces they must keep to.
+#[derive(Clone, Debug)]
+pub struct Homes<const D: usize> {
+    sides: [Vec<usize>; D],     // of every cell along the axis: C0 lines before it
+    kept_faces: [[bool; 2]; D], // lower and upper: functions on the face have homes at the face only
+}
+
+impl<const D: usize> Homes<D> {
+    /// In a grid; functions on a face in `kept_faces` (lower and upper of each axis) have homes in the cells at that
+    /// face only.
+    pub fn of(grid: &Grid<D>, kept_faces: [[bool; 2]; D]) -> Self {
+        Self { sides: grid.axes().each_ref().map(sides), kept_faces }
+    }
+
+    /// How near a cell (global, along each axis) is to a function (global); `None` where the cell is no home of it: too
+    /// far away, beyond a C0 line, or off a face that the function must keep to.
+    pub fn nearness(&self, grid: &Grid<D>, function: &[usize; D], cell: &[usize; D]) -> Option<Nearness> {
+        let (mut apart, mut off_centre, mut number) = (0, 0.0, 0);
+        for axis in 0..D {
+            let (knots, j, l) = (&grid.axes()[axis], function[axis], cell[axis]);
+            let steps = if j < l { l - j } else { j.saturating_sub(l + knots.order()) };
+            if steps > REACH || !self.is_on_side(knots, axis, j, l) || !self.keeps_to_faces(knots, axis, j, l) {
+                return None;
+            }
+            apart += steps * steps;
+            let (lower, upper) = (knots.breakpoint(l), knots.breakpoint(l + 1));
+            off_centre += ((knots.greville(j) - 0.5 * (lower + upper)) / (upper - lower)).powi(2);
+            number = number * knots.cells() + l;
+        }
+        let off_centre = (off_centre / RESOLUTION).round();
+        Some(Nearness { apart: apart as f64, off_centre, cell: number as f64 })
+    }
+
+    /// Whether no C0 line lies between the support of function `j` and cell `l`.
+    fn is_on_side(&self, knots: &KnotVector, axis: usize, j: usize, l: usize) -> bool {
+        let support = j.saturating_sub(knots.order())..(j + 1).min(knots.cells());
+        let mut with_length = support.filter(|&cell| knots.has_length(cell));
+        let Some(first) = with_length.next() else { return false };
+        let last = with_length.next_back().unwrap_or(first);
+        let sides = &self.sides[axis];
+        (sides[first]..=sides[last]).contains(&sides[l])
+    }
+
+    fn keeps_to_faces(&self, knots: &KnotVector, axis: usize, j: usize, l: usize) -> bool {
+        let [lower, upper] = self.kept_faces[axis];
+        let leaves_lower = lower && j == 0 && l != 0;
+        let leaves_upper = upper && j + 1 == knots.functions() && l + 1 != knots.cells();
+        !leaves_lower && !leaves_upper
+    }
+}
+
+/// Per cell of an axis the number of C0 lines before it: breakpoints of multiplicity q, between whose copies lie q - 1
+/// cells without length. Linear splines are C0 everywhere, and have no such lines.
+fn sides(knots: &KnotVector) -> Vec<usize> {
+    let (mut lines, mut without_length) = (0, 0);
+    let side = |cell: usize| {
+        if knots.has_length(cell) {
+            without_length = 0;
+        } else {
+            without_length += 1;
+            lines += usize::from(without_length + 1 == knots.order());
+        }
+        lines
+    };
+    (0..knots.cells()).map(side).collect()
+}
+
+/// e_ij along one axis: what function `j` takes of each of the q + 1 functions of cell `home`.
+pub fn weights(knots: &KnotVector, j: usize, home: usize) -> Vec<f64> {
+    let functions = home..=home + knots.order();
+    if functions.contains(&j) {
+        return functions.map(|i| f64::from(u8::from(i == j))).collect();
+    }
+    match knots.order() {
+        1 => tangent::<2>(knots, j, home),
+        2 => tangent::<3>(knots, j, home),
+        _ => tangent::<4>(knots, j, home),
+    }
+}
+
+/// The value at the Greville abscissa of function `j` of the tangents to the W functions of cell `home`.
+fn tangent<const W: usize>(knots: &KnotVector, j: usize, home: usize) -> Vec<f64> {
+    let abscissa = knots.greville(j);
+    let nearest = abscissa.clamp(knots.breakpoint(home), knots.breakpoint(home + 1));
+    let (N, dN) = knots.basis::<W>(nearest, home);
+    N.iter().zip(dN).map(|(N, dN)| N + dN * (abscissa - nearest)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn graded(order: usize) -> KnotVector {
+        KnotVector::graded(&[0.0, 1.0, 1.5, 1.9, 2.5, 4.0, 5.0, 6.5, 7.0], order).unwrap()
+    }
+
+    #[test]
+    fn weights_keep_linear_fields_on_open_graded_knots_of_every_order() {
+        for order in 1..=3 {
+            let knots = graded(order);
+            for (j, home) in (0..knots.functions()).flat_map(|j| (0..knots.cells()).map(move |home| (j, home))) {
+                let weights = weights(&knots, j, home);
+                let sum: f64 = weights.iter().sum();
+                let place: f64 = weights.iter().enumerate().map(|(a, w)| w * knots.greville(home + a)).sum();
+                let size: f64 = weights.iter().map(|w| w.abs()).sum();
+                assert!((sum - 1.0).abs() <= 1e-14 * size, "{order} {j} {home}: {sum}");
+                assert!((place - knots.greville(j)).abs() <= 1e-13 * size, "{order} {j} {home}: {place}");
+            }
+        }
+    }
+
+    #[test]
+    fn on_uniform_knots_a_quadratic_function_goes_on_from_the_two_nearest_ones() {
+        let knots = KnotVector::uniform(0.5, 12, 2).unwrap();
+        for steps in 1..=REACH {
+            let far = steps as f64;
+            let close = |found: Vec<f64>, expected: [f64; 3]| {
+                found.iter().zip(expected).for_each(|(found, expected)| assert!((found - expected).abs() < 1e-13));
+            };
+            close(weights(&knots, 5 + 2 + steps, 5), [0.0, -far, 1.0 + far]);
+            close(weights(&knots, 5 - steps, 5), [1.0 + far, -far, 0.0]);
+        }
+    }
+
+    #[test]
+    fn no_home_lies_beyond_a_c0_line_but_for_the_function_on_it() {
+        // Cells 0 1 2 | 4 5 6, the line at 3 with a cell without length, number 3, between its copies.
+        let knots = KnotVector::graded(&[0.0, 1.0, 2.0, 3.0, 3.0, 4.0, 5.0, 6.0], 2).unwrap();
+        assert_eq!(sides(&knots), [0, 0, 0, 1, 1, 1, 1]);
+        let grid = Grid::new([knots.clone(), knots.clone()]).unwrap();
+        let homes = Homes::of(&grid, [[false; 2]; 2]);
+        let is_home = |j: usize, l: usize| homes.nearness(&grid, &[j, 3], &[l, 2]).is_some();
+        // Function 3 ends at the line, function 4 is on it, function 5 begins there.
+        assert_eq!([2, 4].map(|l| is_home(3, l)), [true, false]);
+        assert_eq!([2, 4].map(|l| is_home(4, l)), [true, true]);
+        assert_eq!([2, 4].map(|l| is_home(5, l)), [false, true]);
+        let linear = KnotVector::uniform(1.0, 4, 1).unwrap();
+        assert_eq!(sides(&linear), [0; 4]);
+    }
+
+    #[test]
+    fn homes_are_near_and_keep_to_faces_where_they_must() {
+        let knots = KnotVector::uniform(1.0, 9, 2).unwrap();
+        let grid = Grid::new([knots.clone(), knots]).unwrap();
+        let anywhere = Homes::of(&grid, [[false; 2]; 2]);
+        let at_faces = Homes::of(&grid, [[true, false], [false, true]]);
+        assert!(anywhere.nearness(&grid, &[0, 4], &[3, 4]).is_some());
+        assert!(anywhere.nearness(&grid, &[0, 4], &[4, 4]).is_none(), "four cells away");
+        assert!(at_faces.nearness(&grid, &[0, 4], &[1, 4]).is_none(), "off the lower face of axis 0");
+        assert!(at_faces.nearness(&grid, &[0, 10], &[0, 8]).is_some());
+        assert!(at_faces.nearness(&grid, &[0, 10], &[0, 7]).is_none(), "off the upper face of axis 1");
+        let [near, far] = [[4, 5], [3, 5]].map(|cell| anywhere.nearness(&grid, &[7, 5], &cell).unwrap());
+        assert!(near < far);
+    }
+}

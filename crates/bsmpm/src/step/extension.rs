@@ -1,0 +1,376 @@
+//! Step (2): extended B-splines. Functions that reach into nearly empty cells only are tied to those of full cells, see
+//! [`grid::extension`](crate::grid::extension) for the weights e_ij.
+//!
+//! A cell is full if its points fill at least 0.8 of it, and a function is outer if it is active and none of its cells
+//! is full. With u_I the inner coefficients, everything else of the step keeps its complete nodal arrays:
+//!
+//! - displacements are extended, u = E u_I, before points deform ([`Extension::extend`]);
+//! - nodal forces are reduced, f_I + E^T f_J, before they are balanced ([`Extension::reduce`]);
+//! - matrices become E^T K E ([`reduced_system`](super::reduced_system)).
+//!
+//! Ranks know the outer functions of their window. A tie whose surroundings other ranks see as well is *published*: all
+//! ranks know it, and exchange its displacement and force, so that sums run in the same order on any number of ranks.
+
+use crate::grid::extension::{Homes, Nearness, REACH, weights};
+use crate::grid::{Grid, Shape};
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::nodal::Nodal;
+use crate::parallel::Halo;
+use crate::points::Points;
+use std::collections::BTreeMap;
+
+/// Part of a cell that its points fill from which on it is full. Of 1 a cell would not be full once it has shrunk.
+const FULL: f64 = 0.8;
+
+/// Which functions are tied to others in the case of a nearly empty support.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExtendedSplines {
+    /// None.
+    #[default]
+    Off,
+    /// Outer functions, so that the displacement goes on linearly.
+    Linear,
+}
+
+/// An outer function that is tied to the functions of its home.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tie<const D: usize> {
+    /// number of its node in the whole grid
+    pub number: usize,
+    /// its node in the window, if it is there
+    pub node: Option<usize>,
+    /// components that are tied; others are prescribed
+    pub tied: [bool; D],
+    /// whether all ranks know it
+    pub is_published: bool,
+    /// cell (global, along each axis) whose functions carry it
+    home: [usize; D],
+    /// functions of the home with a weight
+    pub inner: Vec<InnerFunction>,
+}
+
+/// A function of a home.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InnerFunction {
+    /// number of its node in the whole grid
+    pub number: usize,
+    /// its node in the window, if it is there
+    pub node: Option<usize>,
+    /// e_ij
+    pub weight: f64,
+}
+
+/// All ties that concern the window of this rank, and those that are published.
+#[derive(Clone, Debug, Default)]
+pub struct Extension<const D: usize> {
+    ties: Vec<Tie<D>>, // ascending by number
+    of_node: Vec<u32>, // of every node of the window: place of its tie, and one; 0: none
+    published: usize,
+    /// outer functions without a full cell near enough, over all ranks: they stay unknowns
+    pub left_over: usize,
+    /// outer functions that are tied, over all ranks
+    pub outer: usize,
+}
+
+impl<const D: usize> Extension<D> {
+    /// Ties the outer functions among the `active` nodes; their components leave `free`. `None` where no function of any
+    /// rank is tied. Two exchanges with the neighbours, three reductions at most, and two gatherings where ranks share
+    /// outer functions.
+    pub fn of<K: Kinematics<D>>(
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        active: &[bool],
+        free: &mut [bool],
+        halo: &dyn Halo,
+    ) -> Option<Self> {
+        if model.extended_splines == ExtendedSplines::Off {
+            return None;
+        }
+        let grid = &model.grid;
+        let full = full_cells::<K, D>(grid, shape, points);
+        let is_inner = inner_functions(grid, shape, &full, halo);
+        let movable = |node: usize| free[Nodal::<D>::of(node)].contains(&true);
+        let is_outer = |node: usize| active[node] && !is_inner[node] && movable(node);
+        let outer: Vec<usize> = halo.owned().nodes().filter(|&node| is_outer(node)).collect();
+        let mut counts = [outer.len() as f64, 0.0];
+        halo.reduce(&mut counts[..1]);
+        if counts[0] == 0.0 {
+            return None;
+        }
+        let search = HomeSearch { grid, full: &full, homes: Homes::of(grid, model.boundary.contact_faces()) };
+        let candidate = |node: usize| Candidate {
+            number: grid.number_of(node),
+            tied: std::array::from_fn(|axis| free[Nodal::<D>::at(node, axis)]),
+        };
+        let (own, shared): (Vec<usize>, Vec<usize>) =
+            outer.into_iter().partition(|&node| is_surrounded_by_private_nodes(grid, node, halo));
+        let shared: Vec<Candidate<D>> = shared.into_iter().map(candidate).collect();
+        let mut ties: Vec<Tie<D>> = own.into_iter().filter_map(|node| search.tie(candidate(node))).collect();
+        ties.extend(search.published_ties(&shared, halo));
+        ties.sort_by_key(|tie| tie.number);
+        let mut extension = Self { of_node: vec![0; grid.nodes()], ..Self::default() };
+        extension.published = ties.iter().filter(|tie| tie.is_published).count();
+        for (place, tie) in ties.iter().enumerate() {
+            let Some(node) = tie.node else { continue };
+            extension.of_node[node] = place as u32 + 1;
+            (0..D).filter(|&i| tie.tied[i]).for_each(|i| free[Nodal::<D>::at(node, i)] = false);
+            counts[1] += f64::from(u8::from(halo.owned().contains(node)));
+        }
+        halo.reduce(&mut counts[1..]);
+        extension.ties = ties;
+        (extension.outer, extension.left_over) = (counts[1] as usize, (counts[0] - counts[1]) as usize);
+        (extension.outer > 0).then_some(extension)
+    }
+
+    /// The tie of a node of the window.
+    #[inline]
+    pub fn tie_of(&self, node: usize) -> Option<&Tie<D>> {
+        self.of_node[node].checked_sub(1).map(|place| &self.ties[place as usize])
+    }
+
+    /// The tie of a node by its number in the whole grid.
+    pub fn tie_of_number(&self, number: usize) -> Option<&Tie<D>> {
+        self.ties.binary_search_by_key(&number, |tie| tie.number).ok().map(|place| &self.ties[place])
+    }
+
+    /// Whether a component (place in a nodal array) is tied.
+    pub fn ties(&self, component: usize) -> bool {
+        let (node, axis) = Nodal::<D>::split(component);
+        self.tie_of(node).is_some_and(|tie| tie.tied[axis])
+    }
+
+    /// Whether any tie is known to all ranks: only then do they exchange anything.
+    pub fn is_published(&self) -> bool {
+        self.published > 0
+    }
+
+    /// u_J = E u_I: sets the tied components of a nodal array, D numbers a node, right at all nodes of the window. One
+    /// gathering where ties are published.
+    pub fn extend(&self, grid: &Grid<D>, u: &mut [f64], halo: &dyn Halo) {
+        let mut message = Vec::new();
+        for tie in self.ties.iter().filter(|tie| grid.holds(&tie.home)) {
+            let value = tie.value(u);
+            if tie.is_published {
+                message.push(tie.number as f64);
+                message.extend_from_slice(&value);
+            }
+            tie.set(value, u);
+        }
+        if self.is_published() {
+            let known = values_by_number::<D>(&halo.gather(&message), D);
+            for tie in self.ties.iter().filter(|tie| tie.is_published) {
+                tie.set(std::array::from_fn(|i| known[&tie.number][i]), u);
+            }
+        }
+    }
+
+    /// f_I + E^T f_J: moves the forces of tied components to the functions of their homes, in several nodal arrays of D
+    /// numbers a node, right at all nodes of the window. One gathering where ties are published.
+    pub fn reduce(&self, forces: &mut [&mut [f64]], halo: &dyn Halo) {
+        let width = forces.len() * D;
+        let mut known = BTreeMap::new();
+        if self.is_published() {
+            let mut message = Vec::new();
+            let is_ours = |node: &usize| halo.owned().contains(*node);
+            for tie in self.ties.iter().filter(|tie| tie.is_published) {
+                let Some(node) = tie.node.filter(is_ours) else { continue };
+                message.push(tie.number as f64);
+                forces.iter().for_each(|force| message.extend_from_slice(&force[Nodal::<D>::of(node)]));
+            }
+            known = values_by_number::<D>(&halo.gather(&message), width);
+        }
+        for tie in &self.ties {
+            let told = known.get(&tie.number);
+            for (array, force) in forces.iter_mut().enumerate() {
+                let own: [f64; D] = match (told, tie.node) {
+                    (Some(told), _) => std::array::from_fn(|i| told[array * D + i]),
+                    (None, Some(node)) => std::array::from_fn(|i| force[Nodal::<D>::at(node, i)]),
+                    (None, None) => continue,
+                };
+                tie.move_force(own, force);
+            }
+        }
+    }
+}
+
+impl<const D: usize> Tie<D> {
+    /// sum_i e_ij u_i; all functions of the home must be in the window.
+    fn value(&self, u: &[f64]) -> [f64; D] {
+        let mut value = [0.0; D];
+        for (node, weight) in self.inner.iter().filter_map(|inner| Some((inner.node?, inner.weight))) {
+            value.iter_mut().zip(&u[Nodal::<D>::of(node)]).for_each(|(sum, u)| *sum += weight * u);
+        }
+        value
+    }
+
+    /// Sets the tied components, if the node is in the window.
+    fn set(&self, value: [f64; D], u: &mut [f64]) {
+        let Some(node) = self.node else { return };
+        (0..D).filter(|&i| self.tied[i]).for_each(|i| u[Nodal::<D>::at(node, i)] = value[i]);
+    }
+
+    /// Takes the tied components of the function's force away from it, and gives them to the home's functions.
+    fn move_force(&self, own: [f64; D], force: &mut [f64]) {
+        for i in (0..D).filter(|&i| self.tied[i]) {
+            if let Some(node) = self.node {
+                force[Nodal::<D>::at(node, i)] = 0.0;
+            }
+            for (node, weight) in self.inner.iter().filter_map(|inner| Some((inner.node?, inner.weight))) {
+                force[Nodal::<D>::at(node, i)] += weight * own[i];
+            }
+        }
+    }
+}
+
+/// `width` numbers of every tie in a message, by the number of its node.
+fn values_by_number<const D: usize>(message: &[f64], width: usize) -> BTreeMap<usize, Vec<f64>> {
+    message.chunks_exact(width + 1).map(|told| (told[0] as usize, told[1..].to_vec())).collect()
+}
+
+/// Per cell of the window: whether its points fill it.
+fn full_cells<K: Kinematics<D>, const D: usize>(grid: &Grid<D>, shape: &Shape<D>, points: &Points<D>) -> Vec<bool> {
+    let volume = |p: usize| points.volume[p] * points.F.at(p).determinant();
+    let mut full = vec![false; grid.cells()];
+    for patch in shape.patches() {
+        let filled: f64 = patch.points.clone().map(volume).sum();
+        full[patch.cell] = filled >= FULL * grid.cell_volume::<K>(&grid.cell_at(patch.cell));
+    }
+    full
+}
+
+/// Per node of the window: whether a cell of its function is full, on any rank.
+fn inner_functions<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, full: &[bool], halo: &dyn Halo) -> Vec<bool> {
+    let mut marks = vec![0.0; grid.nodes()];
+    for patch in shape.patches().iter().filter(|patch| full[patch.cell]) {
+        shape.offsets().iter().for_each(|offset| marks[patch.first_node + offset] = 1.0);
+    }
+    halo.max(&mut marks, 1);
+    marks.into_iter().map(|mark| mark > 0.0).collect()
+}
+
+/// Whether all that a tie of this node touches is this rank's alone: the nodes of its home, those that it couples with
+/// in a matrix, and the homes of these.
+fn is_surrounded_by_private_nodes<const D: usize>(grid: &Grid<D>, node: usize, halo: &dyn Halo) -> bool {
+    let place = grid.node_at(node);
+    let far = REACH + 2 * grid.order() + grid.beyond();
+    let ends: [[usize; 2]; D] = std::array::from_fn(|axis| {
+        let room = &grid.room()[axis];
+        let last = room.end + grid.order() - 1;
+        [place[axis].saturating_sub(far).max(room.start), (place[axis] + far).min(last)]
+    });
+    // Private nodes are those of a box, so that its corners tell.
+    (0..1 << D).all(|corner: usize| {
+        let corner: [usize; D] = std::array::from_fn(|axis| ends[axis][corner >> axis & 1]);
+        grid.node_index(&corner).is_some_and(|node| halo.is_private(node))
+    })
+}
+
+/// An outer function that has no home yet.
+#[derive(Clone, Copy, Debug)]
+struct Candidate<const D: usize> {
+    number: usize,
+    tied: [bool; D],
+}
+
+/// Looks for homes among the full cells of this rank.
+struct HomeSearch<'a, const D: usize> {
+    grid: &'a Grid<D>,
+    full: &'a [bool],
+    homes: Homes<D>,
+}
+
+impl<const D: usize> HomeSearch<'_, D> {
+    /// The nearest full cell of this rank that may be the function's home.
+    fn nearest(&self, number: usize) -> Option<Nearness> {
+        let (grid, place) = (self.grid, self.grid.place_of_number(number));
+        let ranges: [std::ops::Range<usize>; D] = std::array::from_fn(|axis| {
+            let window = &grid.cells_along()[axis];
+            let start = place[axis].saturating_sub(grid.order() + REACH).max(window.start);
+            start..(place[axis] + REACH + 1).min(window.end).max(start)
+        });
+        let count: usize = ranges.iter().map(ExactSizeIterator::len).product();
+        let cell_at = |mut at: usize| {
+            let mut cell = [0; D];
+            for axis in (0..D).rev() {
+                cell[axis] = ranges[axis].start + at % ranges[axis].len();
+                at /= ranges[axis].len();
+            }
+            cell
+        };
+        let full = (0..count).map(cell_at).filter(|cell| self.full[grid.cell_index(cell)]);
+        full.filter_map(|cell| self.homes.nearness(grid, &place, &cell))
+            .min_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal))
+    }
+
+    /// The tie of a function whose surroundings are this rank's alone, if there is a home.
+    fn tie(&self, outer: Candidate<D>) -> Option<Tie<D>> {
+        self.nearest(outer.number).map(|nearest| self.tied_to(outer, nearest, false))
+    }
+
+    /// Ties of functions that other ranks see, too: every rank tells its candidates, and then the best home that it has
+    /// for each of all ranks'.
+    fn published_ties(&self, own: &[Candidate<D>], halo: &dyn Halo) -> Vec<Tie<D>> {
+        let mut message = Vec::with_capacity(own.len() * 2);
+        for candidate in own {
+            let tied: usize = (0..D).map(|axis| usize::from(candidate.tied[axis]) << axis).sum();
+            message.extend([candidate.number as f64, tied as f64]);
+        }
+        let all: Vec<Candidate<D>> = halo
+            .gather(&message)
+            .chunks_exact(2)
+            .map(|told| Candidate {
+                number: told[0] as usize,
+                tied: std::array::from_fn(|axis| told[1] as usize >> axis & 1 == 1),
+            })
+            .collect();
+        if all.is_empty() {
+            return Vec::new();
+        }
+        message.clear();
+        for candidate in &all {
+            let Some(Nearness { apart, off_centre, cell }) = self.nearest(candidate.number) else { continue };
+            message.extend([candidate.number as f64, apart, off_centre, cell]);
+        }
+        let mut nearest: BTreeMap<usize, Nearness> = BTreeMap::new();
+        for told in halo.gather(&message).chunks_exact(4) {
+            let other = Nearness { apart: told[1], off_centre: told[2], cell: told[3] };
+            let known = nearest.entry(told[0] as usize).or_insert(other);
+            if other < *known {
+                *known = other;
+            }
+        }
+        let tie = |candidate: Candidate<D>| Some(self.tied_to(candidate, *nearest.get(&candidate.number)?, true));
+        all.into_iter().filter_map(tie).collect()
+    }
+
+    fn tied_to(&self, outer: Candidate<D>, nearest: Nearness, is_published: bool) -> Tie<D> {
+        let grid = self.grid;
+        let (place, home) = (grid.place_of_number(outer.number), self.cell_of_number(nearest.cell as usize));
+        let along: [Vec<f64>; D] = std::array::from_fn(|axis| weights(&grid.axes()[axis], place[axis], home[axis]));
+        let width = grid.order() + 1;
+        let mut inner = Vec::new();
+        for k in 0..grid.cell_nodes() {
+            let digit: [usize; D] = std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);
+            let weight: f64 = (0..D).map(|axis| along[axis][digit[axis]]).product();
+            if weight != 0.0 {
+                let node = std::array::from_fn(|axis| home[axis] + digit[axis]);
+                let number = (0..D).fold(0, |number, axis| number * grid.axes()[axis].functions() + node[axis]);
+                inner.push(InnerFunction { number, node: grid.node_index(&node), weight });
+            }
+        }
+        Tie { number: outer.number, node: grid.node_index(&place), tied: outer.tied, is_published, home, inner }
+    }
+
+    /// Cell along each axis by its number in the whole grid.
+    fn cell_of_number(&self, mut number: usize) -> [usize; D] {
+        let mut cell = [0; D];
+        for axis in (0..D).rev() {
+            let cells = self.grid.axes()[axis].cells();
+            cell[axis] = number % cells;
+            number /= cells;
+        }
+        cell
+    }
+}
