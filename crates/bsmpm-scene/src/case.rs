@@ -26,7 +26,6 @@ use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
 use crate::region::Region;
 use crate::words::{AnalysisType, Factor, FrameField, Ksp, Pc};
-use bsmpm::background::{Extent, Kind};
 use bsmpm::boundary::Contact;
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
@@ -235,10 +234,6 @@ pub struct Solver {
     pub extended_splines: ExtendedSplines,
     /// -  coefficient of the soft background; 0: none
     pub background: f64,
-    /// What the background resists.
-    pub background_kind: Kind,
-    /// Cells that get the background.
-    pub background_cells: Extent,
     /// The linear solver.
     pub linear: Linear,
     /// The same bits in every run on as many ranks.

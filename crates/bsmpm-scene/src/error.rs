@@ -1,6 +1,7 @@
 //! One thing that is wrong with a case, told so that its author finds it and knows what to write; and one that the
 //! program chose by itself.
 
+use crate::words::RemovedWord;
 use std::fmt;
 
 /// Where a value or key was written. Orders as a report lists: the file from its start, then overrides.
@@ -55,6 +56,8 @@ pub struct Error {
     pub key: String,
     /// What was found and what is allowed.
     pub message: String,
+    /// The word that was found, if earlier versions had it and this one does not.
+    pub removed: Option<&'static RemovedWord>,
     /// The line of the file, shortened around the place, and the characters before the mark.
     pub(crate) excerpt: Option<(String, usize)>,
 }

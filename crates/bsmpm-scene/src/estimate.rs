@@ -167,12 +167,11 @@ impl Systems {
 impl Case {
     /// Layers of nodes, beyond those of a cell, with which a node is coupled along an axis.
     pub(crate) fn beyond(&self) -> usize {
-        let background = if self.solver.background > 0.0 { self.solver.background_kind.beyond() } else { 0 };
         // In space the coupled stiffness has 343 blocks a node instead of 125, which pays near incompressibility only.
         if self.grid.dims() == 3 && !self.is_nearly_incompressible() {
-            return background;
+            return 0;
         }
-        background.max(self.stabilisation.beyond(self.grid.order))
+        self.stabilisation.beyond(self.grid.order)
     }
 
     /// Whether some material is so nearly incompressible that in space the secants' stiffness has F-bar's coupling.

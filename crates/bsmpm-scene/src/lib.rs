@@ -37,7 +37,6 @@ mod sketch;
 mod source;
 mod validate;
 
-pub use bsmpm::background::{Extent, Kind as BackgroundKind};
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use bsmpm::quadrature::Quadrature;

@@ -104,6 +104,11 @@ impl Context {
             let path = join(path, key.name);
             match (written.get(key.name), key.presence) {
                 (Some(entry), Presence::Later) => report.error(entry.origin, &path, "not available yet"),
+                (Some(entry), Presence::Retired) => {
+                    if self.datum(&key.kind, &entry.node, &path, report).is_some() {
+                        report.warn(format!("{path}: this key has no effect any more, as {}. Delete it.", key.doc));
+                    }
+                }
                 (Some(entry), _) => {
                     let datum = self.datum(&key.kind, &entry.node, &path, report);
                     record.fields.push(RecordField { key: key.name, origin: entry.node.origin, written: true, datum });
@@ -116,7 +121,7 @@ impl Context {
                     let datum = self.default(&key.kind, text, (origin, &path), report);
                     record.fields.push(RecordField { key: key.name, origin, written: false, datum });
                 }
-                (None, Presence::Optional | Presence::Later) => {}
+                (None, Presence::Optional | Presence::Later | Presence::Retired) => {}
             }
         }
         let mut told = Vec::new();
@@ -211,7 +216,7 @@ impl Context {
     }
 
     fn unknown_key(self, table: &'static Table, key: &str) -> String {
-        let names = || table.keys.iter().map(|key| key.name);
+        let names = || table.keys.iter().filter(|key| key.presence != Presence::Retired).map(|key| key.name);
         let elsewhere = || self.root.all().into_iter().find(|other| other.key(key).is_some());
         let called = CALLED.iter().find(|(other, _)| *other == key);
         let hint = match (called, nearest(key, names()), elsewhere()) {

@@ -99,6 +99,10 @@ impl Page {
     }
 
     fn key(&mut self, key: &Key) {
+        if key.presence == Presence::Retired {
+            let text = format!("**`{}`**: this key has no effect any more, as {}. Delete it.", key.name, key.doc);
+            return self.wrapped("- ", &text);
+        }
         let mut text = format!("**`{}`**: {}.", key.name, key.doc);
         if !matches!(key.kind, Kind::Open) {
             let _ = write!(text, " {}.", capitalised(&takes(key)));
@@ -158,6 +162,7 @@ fn presence(presence: Presence) -> String {
         Presence::Optional => "Optional".to_owned(),
         Presence::Default(value) => format!("Default: `{value}`"),
         Presence::Later => "Not available yet".to_owned(),
+        Presence::Retired => "Without effect".to_owned(),
     }
 }
 

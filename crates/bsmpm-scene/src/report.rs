@@ -2,6 +2,7 @@
 
 use crate::error::{Choice, Error, Origin, Place};
 use crate::source::Source;
+use crate::words::RemovedWord;
 use std::collections::HashSet;
 
 /// Errors that are reported at most; a file with more is no case.
@@ -24,6 +25,16 @@ impl<'a> Report<'a> {
 
     /// Records an error at `origin` that concerns the key path `key`.
     pub(crate) fn error(&mut self, origin: Origin, key: &str, message: impl Into<String>) {
+        self.record(origin, key, message.into(), None);
+    }
+
+    /// Records that the value of `key` is a word that this version does not have any more.
+    pub(crate) fn removed(&mut self, origin: Origin, key: &str, word: &'static RemovedWord) {
+        let RemovedWord { word: text, last, remedy } = word;
+        self.record(origin, key, format!("\"{text}\" was removed after {last}. {remedy}"), Some(word));
+    }
+
+    fn record(&mut self, origin: Origin, key: &str, message: String, removed: Option<&'static RemovedWord>) {
         let (place, excerpt) = match origin {
             Origin::Text(offset) => {
                 let (place, excerpt) = self.source.locate(offset);
@@ -33,7 +44,7 @@ impl<'a> Report<'a> {
             Origin::Nowhere => (Place::File, None),
         };
         let (file, key) = (self.source.name.to_owned(), shortened(key));
-        self.errors.push((origin, Error { file, place, key, message: message.into(), excerpt }));
+        self.errors.push((origin, Error { file, place, key, message, removed, excerpt }));
     }
 
     pub(crate) fn warn(&mut self, message: impl Into<String>) {
@@ -63,6 +74,7 @@ impl<'a> Report<'a> {
                 place: Place::File,
                 key: String::new(),
                 message: format!("{more} more errors are not shown"),
+                removed: None,
                 excerpt: None,
             });
         }

@@ -75,6 +75,8 @@ pub enum Presence {
     Default(&'static str),
     /// Part of the language, but not available yet: an error that says so.
     Later,
+    /// Without effect any more; its meaning says why. Its value is verified and left out, with a warning.
+    Retired,
 }
 
 /// What a value may be.

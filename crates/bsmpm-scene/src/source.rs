@@ -41,7 +41,14 @@ pub fn load(path: &Path) -> io::Result<Vec<u8>> {
 /// Text of a case file: UTF-8 without its byte order mark. One error if it is too large, UTF-16, binary or no UTF-8.
 pub(crate) fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Vec<Error>> {
     let whole = |message: String| {
-        vec![Error { file: name.to_owned(), place: Place::File, key: String::new(), message, excerpt: None }]
+        vec![Error {
+            file: name.to_owned(),
+            place: Place::File,
+            key: String::new(),
+            message,
+            removed: None,
+            excerpt: None,
+        }]
     };
     if bytes.len() > MAX_BYTES {
         return Err(whole(format!("the file is larger than {MAX_BYTES} bytes, the limit of a case file")));

@@ -8,11 +8,13 @@ mod define;
 mod measurement;
 mod output;
 mod physics;
+mod retired;
 mod scene;
 mod solver;
 
 pub use measurement::Measurement;
 pub use output::{FrameField, ProfileQuantity};
+pub(crate) use retired::{BACKGROUND_CELLS, BACKGROUND_KIND};
 pub use scene::{
     Accuracy, AnalysisType, Axis, Base, C0Lines, Components, Drainage, Failure, Format, Geometry, Order, Path,
     RigidMotion, Settled, Side, Start, Support,
@@ -27,7 +29,7 @@ pub trait Word: Copy + 'static {
     /// What `word` stands for, if it is one of them.
     fn of(word: &str) -> Option<Self>;
 
-    /// Its word; of several the one that is listed first.
+    /// Its word.
     fn word(self) -> &'static str;
 }
 
@@ -42,6 +44,19 @@ pub struct Words {
     pub later: &'static [&'static str],
     /// Words that others use, and which of these is meant.
     pub misnomers: &'static [(&'static str, &'static str)],
+    /// Words that earlier versions had.
+    pub removed: &'static [RemovedWord],
+}
+
+/// A word that earlier versions read and this one does not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RemovedWord {
+    /// The word.
+    pub word: &'static str,
+    /// The last version that reads it.
+    pub last: &'static str,
+    /// What a case says instead, an imperative sentence.
+    pub remedy: &'static str,
 }
 
 impl Words {
@@ -75,7 +90,6 @@ const AUTO: &str = "auto";
 mod tests {
     use super::*;
     use crate::schema::LawName;
-    use bsmpm::background::Kind;
 
     #[test]
     fn words_lead_to_their_choice_and_back() {
@@ -85,12 +99,5 @@ mod tests {
         }
         assert_eq!(Pc::of(AUTO), None);
         assert_eq!(LawName::of("cam-clay"), None);
-    }
-
-    #[test]
-    fn a_word_of_old_is_read_and_another_written() {
-        assert_eq!(Kind::of("laplacian"), Some(Kind::Strain));
-        assert_eq!(Kind::Strain.word(), "strain");
-        assert!(Kind::WORDS.words().eq(["strain", "laplacian", "ghost-penalty", "curvature"]));
     }
 }

@@ -243,10 +243,7 @@ fn solver(u: &mut Unstructured<'_>, text: &mut String) -> Result<()> {
         line(text, &format!("tolerance = {:?}\nforce_tolerance = {:?}", tolerances[0], tolerances[1]));
     }
     if u.arbitrary()? {
-        let kind = quoted(u, &["laplacian", "curvature", "ghost-penalty"])?;
-        let cells = quoted(u, &["occupied", "partly-filled"])?;
         line(text, &format!("background = {:?}", if u.ratio(1, 4)? { 0.0 } else { size(u, -9.0, 0.0)? }));
-        line(text, &format!("background_kind = \"{kind}\"\nbackground_cells = \"{cells}\""));
     }
     if u.ratio(1, 4)? {
         line(text, "[[history]]\nquantity = \"energy\"");

@@ -7,7 +7,8 @@ use bsmpm_io::checkpoint::FoundCheckpoint;
 use bsmpm_io::directory::Existing;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Manifest, ManifestRestart, Status};
-use bsmpm_scene::{Case, Difference};
+use bsmpm_scene::words::RemovedWord;
+use bsmpm_scene::{Case, Difference, Error};
 
 /// Restarts in a row from one step after which no more is tried: the loop of a batch system would have no end.
 const MOST_FUTILE: usize = 3;
@@ -97,10 +98,24 @@ pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -
 pub(super) fn admissible(what: &str, past: &Manifest, case: &Case) -> Result<Vec<Difference>, Refusal> {
     let refused = |reason: String| Refusal::new(exit::CHECKPOINT, format!("{what} {reason}"));
     let differences = bsmpm_scene::differences(&past.case.text, &case.text);
-    let differences = differences.map_err(|_| refused("is of a case that this version does not know".into()))?;
+    let differences = differences.map_err(|errors| refused(unreadable(&errors)))?;
     let bound: Vec<String> =
         differences.iter().filter(|difference| !difference.may_change).map(ToString::to_string).collect();
     if bound.is_empty() { Ok(differences) } else { Err(refused(format!("is of another case: {}", bound.join("; ")))) }
+}
+
+/// Why the case of an earlier run is not read any more.
+fn unreadable(errors: &[Error]) -> String {
+    let removed = errors.iter().find_map(|error| error.removed.map(|removed| (&error.key, removed)));
+    removed.map_or_else(
+        || "is of a case that this version does not know".into(),
+        |(key, RemovedWord { word, last, .. })| {
+            format!(
+                "is of a case with {key} = \"{word}\", which was removed after {last}. Go on with that version, or start the \
+                 run anew with --force."
+            )
+        },
+    )
 }
 
 /// Whether the last restarts were all from this step.

@@ -278,6 +278,10 @@ impl ValueReader<'_, '_> {
         if let Some(word) = words.words().find(|word| word == text) {
             return Some(Datum::Word(word));
         }
+        if let Some(removed) = words.removed.iter().find(|removed| removed.word == text) {
+            self.report.removed(node.origin, self.path, removed);
+            return None;
+        }
         if words.later.contains(&text.as_str()) {
             return self.fail(node, format!("\"{text}\" is not available yet; allowed: {}", self.kind));
         }

@@ -1,12 +1,14 @@
 //! The tables and keys of the language.
 
 use super::Kind::*;
-use super::Presence::{Default, Optional, Required};
+use super::Presence::{Default, Optional, Required, Retired};
 use super::{
     Dimension as In, Kind, Range, Table, body, element, flow, key, laws, loads, one_of, output, rigid, stage, water,
 };
-use crate::words::{Accuracy, AnalysisType, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear, Order, Pc, Word};
-use bsmpm::background::{Extent, Kind as Background};
+use crate::words::{
+    Accuracy, AnalysisType, BACKGROUND_CELLS, BACKGROUND_KIND, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear,
+    Order, Pc, Word,
+};
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::extension::ExtendedSplines;
@@ -185,20 +187,10 @@ static SOLVER: Table = Table {
             "background",
             Quantity(In::Number, UP_TO_1),
             Optional,
-            "soft background; quasi-static 1e-4 (curvature: 1e-3), dynamic 0",
+            "soft elastic background in occupied cells, part of the largest young in a cell; quasi-static 1e-4, dynamic 0",
         ),
-        key(
-            "background_kind",
-            Choice(Background::WORDS),
-            Default("\"strain\""),
-            "what it resists; laplacian is an earlier name of strain",
-        ),
-        key(
-            "background_cells",
-            Choice(Extent::WORDS),
-            Optional,
-            "cells that get it; occupied (curvature: partly-filled)",
-        ),
+        key("background_kind", Choice(BACKGROUND_KIND), Retired, "the background always resists strain"),
+        key("background_cells", Choice(BACKGROUND_CELLS), Retired, "all occupied cells always have the background"),
         key(
             "linear",
             ChoiceOr(LinearSolver::WORDS, &LINEAR),

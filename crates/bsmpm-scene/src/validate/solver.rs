@@ -6,7 +6,6 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Factor, Ksp, LinearSolver, Pc, Word};
-use bsmpm::background::{Extent, Kind};
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::step::extension::ExtendedSplines;
@@ -21,7 +20,7 @@ pub(super) fn read(
     let solver = root.record("solver")?;
     let quadrature = weights(solver, regime, grid.map(|grid| grid.order), report);
     let extended_splines = extended_splines(solver, regime, report);
-    let (kind, background) = background(solver, regime, grid.map(|grid| grid.order), report);
+    let background = background(solver, regime, report);
     let poisson = materials.unwrap_or_default().iter().map(|material| material.material.elastic().poisson);
     let unknowns = grid.map_or(0, |grid| grid.dims() as u128 * estimate::nodes(grid));
     let size = Size { unknowns, poisson: poisson.fold(0.0, f64::max), reproducible: solver.flag("reproducible")? };
@@ -37,8 +36,6 @@ pub(super) fn read(
         quadrature: quadrature?,
         extended_splines: extended_splines?,
         background: background?,
-        background_kind: kind?,
-        background_cells: cells(solver, kind?)?,
         linear: linear?,
         reproducible: size.reproducible,
     })
@@ -92,59 +89,20 @@ fn extended_splines(solver: &Record, regime: Option<Regime>, report: &mut Report
     }
 }
 
-/// What the background resists, and its coefficient.
-fn background(
-    solver: &Record,
-    regime: Option<Regime>,
-    order: Option<usize>,
-    report: &mut Report<'_>,
-) -> (Option<Kind>, Option<f64>) {
-    let kind = background_kind(solver, order, report);
-    let coefficient = if solver.gives("background") {
-        solver.number("background")
-    } else {
-        regime.zip(kind).map(|(regime, kind)| default_background(regime, kind, report))
-    };
-    (kind, coefficient)
-}
-
-const KIND: &str = "background_kind";
-
-/// The cells that the case names, else those that its kind of background is meant for.
-fn cells(solver: &Record, kind: Kind) -> Option<Extent> {
-    let meant = match kind {
-        Kind::Curvature => Extent::PartlyFilled,
-        Kind::Strain | Kind::GhostPenalty => Extent::Occupied,
-    };
-    Some(solver.word_if_given("background_cells")?.unwrap_or(meant))
-}
-
-/// What the case wants the background to resist.
-fn background_kind(solver: &Record, order: Option<usize>, report: &mut Report<'_>) -> Option<Kind> {
-    let linear = order? == 1;
-    let kind = solver.word(KIND)?;
-    if linear && kind == Kind::Curvature {
-        let message = "functions of a linear grid have no curvature along an axis, so that nothing would hold nearly \
-                       empty cells; use \"strain\"";
-        solver.error(KIND, message, report);
-        return None;
+/// The coefficient of the soft background.
+fn background(solver: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
+    if solver.gives("background") {
+        return solver.number("background");
     }
-    Some(kind)
-}
-
-/// Curvature 1e-3 bounds the condition of the stiffness by 7e3 (the Laplacian of 1e-4: 7e5) and lets a tenth or ten
-/// times of it change a slope next to failure by 1 to 3 %; larger ones hold the edge too much.
-fn default_background(regime: Regime, kind: Kind, report: &mut Report<'_>) -> f64 {
-    let (background, reason) = match (regime, kind) {
-        (Regime::Dynamic, _) => (0.0, "inertia holds nearly empty cells in a dynamic analysis"),
-        (Regime::QuasiStatic, Kind::Curvature) => (1e-3, QUASI_STATIC),
-        (Regime::QuasiStatic, Kind::Strain | Kind::GhostPenalty) => (1e-4, QUASI_STATIC),
+    let (background, reason) = match regime? {
+        Regime::Dynamic => (0.0, "inertia holds nearly empty cells in a dynamic analysis"),
+        Regime::QuasiStatic => {
+            (1e-4, "functions that extended splines leave untied have no other stiffness in a quasi-static analysis")
+        }
     };
     report.note("solver.background", format!("{background:?}"), reason);
-    background
+    Some(background)
 }
-
-const QUASI_STATIC: &str = "nothing else holds nearly empty cells in a quasi-static analysis";
 
 /// Unknowns from which multigrid is taken by itself: a factor of so many has about 40 GB.
 const MANY: u128 = 10_000_000;

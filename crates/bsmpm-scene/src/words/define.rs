@@ -1,22 +1,23 @@
 //! How words are defined: for an enum of another crate, or together with the enum.
 
-/// The words of an enum: `Variant = "word" | "word of old": "what it means",` those that are not available `later`, and
-/// `misnomers` with what is meant by them.
+/// The words of an enum: `Variant = "word": "what it means",` those that are not available `later`, and `misnomers`
+/// with what is meant by them.
 macro_rules! words {
     ($type:ident {
-        $($variant:ident = $word:literal $(| $old:literal)*: $doc:expr,)+
+        $($variant:ident = $word:literal: $doc:expr,)+
     } $(later [$($later:literal),+])? $(misnomers [$($misnomer:literal: $meant:literal),+])?) => {
         impl $crate::words::Word for $type {
             const WORDS: $crate::words::Words = $crate::words::Words {
                 auto: None,
-                words: &[$(($word, $doc), $(($old, concat!("earlier name of ", $word)),)*)+],
+                words: &[$(($word, $doc)),+],
                 later: &[$($($later),+)?],
                 misnomers: &[$($(($misnomer, $meant)),+)?],
+                removed: &[],
             };
 
             fn of(word: &str) -> Option<Self> {
                 match word {
-                    $($word $(| $old)* => Some(Self::$variant),)+
+                    $($word => Some(Self::$variant),)+
                     _ => None,
                 }
             }

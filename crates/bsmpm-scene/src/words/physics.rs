@@ -1,6 +1,5 @@
 //! Words of choices that the physics defines.
 
-use bsmpm::background::{Extent, Kind};
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::extension::ExtendedSplines;
@@ -34,15 +33,4 @@ words! { ExtendedSplines {
 words! { PermeabilityLaw {
     Constant = "constant": "it stays as it is",
     KozenyCarman = "kozeny-carman": "it follows the porosity n as n^3/(1-n)^2",
-} }
-
-words! { Kind {
-    Strain = "strain" | "laplacian": "resists strain",
-    GhostPenalty = "ghost-penalty": "resists jumps between cells at the edge of bodies",
-    Curvature = "curvature": "resists curvature",
-} }
-
-words! { Extent {
-    Occupied = "occupied": "all cells that hold points",
-    PartlyFilled = "partly-filled": "cells that points do not fill",
 } }

@@ -180,7 +180,9 @@ fn bases() -> Vec<String> {
         "line = [[0.0, 0.75], [\"2 m\", 0.5]]",
         "line_path = [[0, 0, 0.75], [0, \"2 m\", 0.5], [1, 0, 1], [1, 2, 0.5]]",
     ];
-    let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, RUBBING.to_owned(), SEEPING.to_owned()];
+    let retired = "background_kind = \"strain\"\nbackground_cells = \"occupied\"";
+    let retired = format!("{STATIC}\n[solver]\nextension = \"linear\"\n{retired}\n");
+    let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, retired, RUBBING.to_owned(), SEEPING.to_owned()];
     bases.extend(still.map(wet));
     let ratio = STATIC.replacen("poisson = 0.3", "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3", 1);
     bases.push(format!("{ratio}\n[gravity]\nacceleration = [0.0, -9.81]\n"));

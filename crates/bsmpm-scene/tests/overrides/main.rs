@@ -10,8 +10,7 @@ use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
-    BackgroundKind, Case, Counted, Error, Every, Extent, Face, GridAxis, Made, Place, Quadrature, Quantity, Site,
-    Support, seed,
+    Case, Counted, Error, Every, Face, GridAxis, Made, Place, Quadrature, Quantity, Site, Support, differences, seed,
 };
 
 const FULL: &str = include_str!("../full.toml");
@@ -159,8 +158,7 @@ fn the_full_case_in_si() {
     assert!(matches!(case.materials[2].material, Material::Hencky(_)));
     assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0, 0.0]));
     assert_eq!(case.boundary, [[Support::Roller, Support::Free], [Support::Fixed; 2], [Support::Free; 2]]);
-    assert_eq!((case.solver.background, case.solver.background_cells), (0.0, Extent::Occupied));
-    assert_eq!(case.solver.background_kind, BackgroundKind::Strain);
+    assert_eq!(case.solver.background, 0.0);
     assert_eq!(case.output.times, [0.25, 0.75]);
     assert_eq!(case.histories[1].quantity, Quantity::Reaction { face: Face { axis: 1, upper: false } });
     let columns: Vec<String> = case.histories.iter().flat_map(|h| h.columns()).map(|c| c.name).collect();
@@ -203,25 +201,64 @@ fn the_full_case_in_si() {
 }
 
 #[test]
-fn the_background_is_that_of_strain_unless_the_case_wants_another() {
-    let kind = |overrides: &[&str]| {
-        let solver = valid(STATIC, overrides).solver;
-        (solver.background_kind, solver.background, solver.background_cells)
-    };
-    let (curvature, strain) = (BackgroundKind::Curvature, BackgroundKind::Strain);
-    assert_eq!(kind(&["grid.order=linear"]), (strain, 1e-4, Extent::Occupied));
-    assert_eq!(kind(&["solver.background_kind=laplacian"]), (strain, 1e-4, Extent::Occupied));
-    let curved = "solver.background_kind=curvature";
-    assert_eq!(kind(&["grid.order=quadratic", curved]), (curvature, 1e-3, Extent::PartlyFilled));
-    assert_eq!(kind(&["grid.order=cubic", curved, "solver.background=0.5"]), (curvature, 0.5, Extent::PartlyFilled));
-    let ghost = "solver.background_kind=ghost-penalty";
-    for order in ["grid.order=linear", "grid.order=quadratic"] {
-        assert_eq!(kind(&[order, ghost]), (BackgroundKind::GhostPenalty, 1e-4, Extent::Occupied));
+fn the_background_is_a_ten_thousandth_at_rest_unless_the_case_wants_another() {
+    let coefficient = |text: &str, overrides: &[&str]| valid(text, overrides).solver.background;
+    for order in ["linear", "quadratic", "cubic"] {
+        assert_eq!(coefficient(STATIC, &[&format!("grid.order={order}")]), 1e-4);
     }
-    let given = ["grid.order=quadratic", "solver.background_cells=partly-filled"];
-    assert_eq!(kind(&given), (strain, 1e-4, Extent::PartlyFilled));
-    let errors = set(STATIC, &["grid.order=linear", "solver.background_kind=curvature"]).unwrap_err();
-    assert!(errors.len() == 1 && errors[0].message.contains("use \"strain\""), "{errors:?}");
+    assert_eq!(coefficient(STATIC, &["solver.background=0.5"]), 0.5);
+    assert_eq!(coefficient(&FULL.replace("background       = 0.0\n", ""), &[]), 0.0);
+}
+
+#[test]
+fn words_of_retired_keys_that_change_nothing_are_read_with_a_warning() {
+    let plain = valid(STATIC, &[]);
+    for (set, told) in [
+        (
+            "solver.background_kind=strain",
+            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete it.",
+        ),
+        (
+            "solver.background_kind=laplacian",
+            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete it.",
+        ),
+        (
+            "solver.background_cells=occupied",
+            "solver.background_cells: this key has no effect any more, as all occupied cells always have the background. \
+             Delete it.",
+        ),
+    ] {
+        let case = valid(STATIC, &[set]);
+        let further: Vec<_> = case.warnings.iter().filter(|warning| !plain.warnings.contains(warning)).collect();
+        assert_eq!(further, [told]);
+        assert_eq!((&case.solver, &case.notes), (&plain.solver, &plain.notes), "{set}");
+        assert_eq!(differences(&case.text, &plain.text).unwrap(), [], "a run goes on with or without it");
+    }
+}
+
+#[test]
+fn words_of_retired_keys_that_were_removed_are_refused_with_what_replaces_them() {
+    for (key, word) in [
+        ("solver.background_kind", "ghost-penalty"),
+        ("solver.background_kind", "curvature"),
+        ("solver.background_cells", "partly-filled"),
+    ] {
+        for text in [STATIC, FULL] {
+            let errors = set(text, &[&format!("{key}={word}")]).unwrap_err();
+            let [error] = &errors[..] else { panic!("{errors:?}") };
+            let told = format!(
+                "\"{word}\" was removed after bsmpm 0.1.0, commit c1b20825. Delete the key: solver.extension = \"linear\", \
+                 the default in quasi-static analysis, replaces it."
+            );
+            assert_eq!((error.key.as_str(), &error.message), (key, &told));
+            assert_eq!(error.removed.map(|removed| removed.word), Some(word));
+        }
+    }
+    let errors = set(STATIC, &["solver.background_kind=bending"]).unwrap_err();
+    assert!(errors.len() == 1 && errors[0].message.starts_with("expected one of \"strain\""), "{errors:?}");
+    assert_eq!(errors[0].removed, None);
+    let errors = set(STATIC, &["solver.background_sort=strain"]).unwrap_err();
+    assert!(errors.iter().all(|error| !error.message.contains("background_kind")), "not recommended: {errors:?}");
 }
 
 #[test]
@@ -290,10 +327,6 @@ fn what_the_program_chooses_is_noted() {
     let noted = |key: &str| case.notes.iter().find(|note| note.key == key).map(|note| note.value.as_str());
     assert_eq!((noted("solver.background"), noted("solver.tolerance")), (Some("0.0001"), Some("1e-8")));
     assert_eq!((case.solver.background, case.solver.linear.factor), (1e-4, Some(Factor::Dissection)));
-    assert_eq!(
-        (case.solver.background_kind, noted("solver.background_kind")),
-        (BackgroundKind::Strain, Some("\"strain\""))
-    );
     let case = valid(&STATIC.replace("end   = 1.0\n", ""), &[]);
     assert_eq!(case.analysis.end, 1.0);
     assert!(case.notes.iter().any(|note| note.key == "analysis.end"));

@@ -187,18 +187,13 @@ fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_a
     assert!(runs[1..].iter().all(|run| *run == runs[0]));
 }
 
-/// Strips, the ghost penalty, whose faces lie between the cells of two ranks, cubic splines, fitted volumes, of cells
-/// whose neighbours another rank has, and averages on pairs of cells, which slabs cut.
+/// Strips, cubic splines, fitted volumes, of cells whose neighbours another rank has, and averages on pairs of cells,
+/// which slabs cut.
 #[test]
 fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
-    for further in [
-        "solver.background_kind=ghost-penalty",
-        "grid.order=cubic",
-        "solver.quadrature=fitted",
-        "stabilisation.method=subgrid-f-bar",
-    ] {
+    for further in ["grid.order=cubic", "solver.quadrature=fitted", "stabilisation.method=subgrid-f-bar"] {
         let set = ["--set", mumps, "--set", "solver.nonlinear=broyden", "--set", further];
         let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
         let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 3));
@@ -310,17 +305,14 @@ fn slabs_thinner_than_the_splines_reach_work_for_every_order() {
     }
 }
 
-/// The ghost penalty ties nodes over the faces between slabs: of a body that crosses them, of slabs that are thinner
-/// than the splines reach, and of the quasi-static matrix, which nothing else completes.
+/// Consistent F-bar couples nodes beyond a cell, over the faces between slabs: of slabs that are thinner than the
+/// splines reach, and in the quasi-static matrix.
 #[test]
-fn the_ghost_penalty_is_the_same_on_1_2_3_4_and_8_ranks() {
-    let ghost = ["--set", "solver.background_kind=ghost-penalty", "--set", "solver.background=1e-2"];
-    let sliding = Scratch::with_case(SLIDING_BLOCK);
-    agree(&sliding, "case.toml", &[&ghost[..], &["--set", "analysis.end=0.02"]].concat(), &[1, 2, 3, 4], 1e-9);
+fn coupling_beyond_a_cell_is_the_same_on_1_2_4_and_8_ranks() {
     let case = shipped("short/self_weight_column.toml");
     for order in ["linear", "quadratic", "cubic"] {
         let order = format!("grid.order={order}");
-        let further = [&ghost[..], &["--set", &order]].concat();
+        let further = ["--set", "stabilisation.method=consistent-f-bar", "--set", &order];
         agree(&Scratch::new(), case.to_str().unwrap(), &further, &[1, 2, 4, 8], 1e-9);
     }
 }

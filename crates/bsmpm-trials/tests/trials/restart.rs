@@ -84,11 +84,11 @@ fn on_other_ranks_it_goes_on_within_tolerances_and_says_so() {
     goes_on_on_other_ranks(SLIDING_BLOCK, &[(2, 1), (1, 3), (4, 2)]);
 }
 
-/// Its windows hold a layer more of the displacement from which a step starts.
+/// Its windows hold further layers of the displacement from which a step starts.
 #[test]
-fn with_the_ghost_penalty_it_goes_on_on_other_ranks_too() {
-    let solver = "[solver]\nbackground_kind = \"ghost-penalty\"\nbackground = 1e-4\n";
-    goes_on_on_other_ranks(&changed(SLIDING_BLOCK, "[solver]\n", solver), &[(2, 3), (4, 2)]);
+fn with_coupling_beyond_a_cell_it_goes_on_on_other_ranks_too() {
+    let coupled = format!("{SLIDING_BLOCK}\n[stabilisation]\nmethod = \"consistent-f-bar\"\n");
+    goes_on_on_other_ranks(&coupled, &[(2, 3), (4, 2)]);
 }
 
 /// What a law declares as its state stays with the points: over a restart to the bit, on other ranks, and in frames.
@@ -194,6 +194,60 @@ fn another_case_is_refused_by_the_keys_that_differ_and_nothing_is_touched() {
     assert_eq!((content(), entries(&scratch.path("case.out/checkpoint"))), (before, listed));
     scratch.mpirun(2, &["case.toml", "--restart", "nowhere.h5", "-o", "new"]).expect(76).says_once("nowhere.json");
     assert!(!scratch.path("new").exists());
+}
+
+/// A checkpoint of an earlier version: the case in it has the key, where this version has written a comment.
+#[test]
+fn a_checkpoint_of_a_case_with_a_removed_option_is_refused_and_one_of_a_case_with_a_retired_key_is_read() {
+    for (key, refused) in [
+        ("background_kind  = \"ghost-penalty\"", true),
+        ("background_kind  = \"curvature\"", true),
+        ("background_cells = \"partly-filled\"", true),
+        ("background_kind  = \"laplacian\"", false),
+        ("background_cells = \"occupied\"", false),
+    ] {
+        let [commented, given] = lines_with_one_checksum(&key.replace('"', "\\\""));
+        let line = commented.replace("\\\"", "\"");
+        let scratch = Scratch::with_case(&changed(SLIDING_BLOCK, "[solver]\n", &format!("[solver]\n{line}\n")));
+        scratch.mpirun(1, &["case.toml", "-q", "--max-steps", "5"]).expect(75);
+        let file = scratch.path("case.out/checkpoint/step_000000005.h5");
+        forge(&file, &commented, &given);
+        scratch.write("case.toml", SLIDING_BLOCK);
+        let from = ["case.toml", "-o", "new", "--restart", file.to_str().unwrap()];
+        if refused {
+            let key = key.replace("  ", " ");
+            let output = scratch.mpirun(2, &from).expect(76);
+            output.says_once(&format!("is of a case with solver.{key}, which was removed after bsmpm 0.1.0"));
+            assert!(!scratch.path("new/history.csv").exists());
+        } else {
+            scratch.mpirun(1, &from).expect(0);
+        }
+    }
+}
+
+/// A line that is a comment, and the same with the key given. HDF5 guards the text with Fletcher's checksum, the sum of
+/// all 16-bit words and that of the sums up to each word: changes of -3, +6 and -3 at equal distances leave both alone.
+fn lines_with_one_checksum(key: &str) -> [String; 2] {
+    let distance = 2 * key.len().div_ceil(2) + 6;
+    [["#", "a", "d"], [" ", "g", "a"]].map(|[first, second, third]| {
+        let start = format!("{first} {key} # ");
+        format!("{start:-<distance$}{second}{third:->distance$}")
+    })
+}
+
+/// Writes `by` in place of `part` into a checkpoint, and its record anew.
+fn forge(file: &Path, part: &str, by: &str) {
+    assert_eq!(part.len(), by.len());
+    let mut bytes = std::fs::read(file).unwrap();
+    let at = bytes.windows(part.len()).position(|window| window == part.as_bytes()).expect("the case is in it");
+    bytes[at..at + part.len()].copy_from_slice(by.as_bytes());
+    std::fs::write(file, &bytes).unwrap();
+    let text = std::fs::read_to_string(file.with_extension("json")).unwrap();
+    let mut record: serde_json::Value = serde_json::from_str(&text).unwrap();
+    record["record"]["blake3"] = blake3::hash(&bytes).to_string().into();
+    let body = record["record"].to_string();
+    let text = format!("{{\"blake3\":\"{}\",\"record\":{body}}}\n", blake3::hash(body.as_bytes()));
+    std::fs::write(file.with_extension("json"), text).unwrap();
 }
 
 #[test]

@@ -1,0 +1,30 @@
+//! Words of keys that have no effect any more: those that are still read, and those that were removed.
+
+use super::{RemovedWord, Words};
+
+/// Words of `[solver] background_kind`: the background resists strain.
+pub(crate) const BACKGROUND_KIND: Words = Words {
+    auto: None,
+    words: &[("strain", "resists strain"), ("laplacian", "earlier name of strain")],
+    later: &[],
+    misnomers: &[],
+    removed: &[replaced_by_extension("ghost-penalty"), replaced_by_extension("curvature")],
+};
+
+/// Words of `[solver] background_cells`: all occupied cells have the background.
+pub(crate) const BACKGROUND_CELLS: Words = Words {
+    auto: None,
+    words: &[("occupied", "all cells that hold points")],
+    later: &[],
+    misnomers: &[],
+    removed: &[replaced_by_extension("partly-filled")],
+};
+
+/// A form of the background that extended B-splines replace.
+const fn replaced_by_extension(word: &'static str) -> RemovedWord {
+    RemovedWord {
+        word,
+        last: "bsmpm 0.1.0, commit c1b20825",
+        remedy: "Delete the key: solver.extension = \"linear\", the default in quasi-static analysis, replaces it.",
+    }
+}
