@@ -337,9 +337,9 @@ mod tests {
         assert_eq!(y, (0..size).map(row).collect::<Vec<_>>(), "whole numbers are exact");
     }
 
-    /// Faces between cells, with every node of the two cells that a face of the ghost penalty has.
+    /// Among all nodes of two neighbouring cells, as blocks that couple cells have them.
     #[test]
-    fn entries_hold_the_sum_of_the_blocks_of_faces() {
+    fn entries_hold_the_sum_of_blocks_of_neighbouring_cells() {
         let grid = grid().reaching(1);
         let size = grid.nodes() * 2;
         let (mut stencil, mut dense) = (all(&grid), vec![0.0; size * size]);

@@ -4,7 +4,7 @@ use crate::region::Region;
 use crate::seed::seed_bodies;
 use crate::words::AnalysisType;
 use crate::{Acting, Body, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Shares, Stage, surfaces};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::rigid::{self, Reaching, RigidBody, RigidState};
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
@@ -41,8 +41,7 @@ pub fn criteria(case: &Case) -> Criteria {
 /// The same once the stages until the time `t` have begun.
 pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result<Model<K, D>, GridError> {
     let coefficient = case.solver.background;
-    let background =
-        (coefficient > 0.0).then_some(Background { kind: Kind::Strain, coefficient, extent: Extent::Occupied });
+    let background = (coefficient > 0.0).then_some(Background { coefficient });
     let (grid, materials) = (grid(case)?, case.materials_at(t));
     let flow = surfaces::flow::<K, D>(case, &grid, t);
     Ok(Model {

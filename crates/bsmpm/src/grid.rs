@@ -316,20 +316,11 @@ impl<const D: usize> Grid<D> {
         size.product() * K::weight(&(lower + size * 0.5))
     }
 
-    /// Integral of a node's function over the grid: its weight is linear, so that the function's mean place decides.
-    pub fn node_volume<K: Kinematics<D>>(&self, node: usize) -> f64 {
-        self.volume::<K>(self.node_at(node), KnotVector::integral)
-    }
-
-    /// Integral over the grid of the function of degree q - 1 that has a node's number ([`Shape::lowered`]).
+    /// Integral over the grid of the function of degree q - 1 that has a node's number ([`Shape::lowered`]): its weight
+    /// is linear, so that the function's mean place decides.
     pub fn lowered_volume<K: Kinematics<D>>(&self, node: usize) -> f64 {
-        self.volume::<K>(self.node_at(node), KnotVector::lowered_integral)
-    }
-
-    /// Of the functions with these numbers along the axes, whose `integral` along one has the length and the mean
-    /// place.
-    fn volume<K: Kinematics<D>>(&self, node: [usize; D], integral: impl Fn(&KnotVector, usize) -> (f64, f64)) -> f64 {
-        let along: [(f64, f64); D] = std::array::from_fn(|axis| integral(&self.axes[axis], node[axis]));
+        let node = self.node_at(node);
+        let along: [(f64, f64); D] = std::array::from_fn(|axis| self.axes[axis].lowered_integral(node[axis]));
         along.iter().map(|(length, _)| length).product::<f64>() * K::weight(&Vector::from_fn(|axis, _| along[axis].1))
     }
 

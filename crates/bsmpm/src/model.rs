@@ -106,7 +106,7 @@ pub struct Model<K, const D: usize> {
     pub quadrature: Quadrature,
     /// Whether functions of nearly empty cells are tied to those of full ones.
     pub extended_splines: ExtendedSplines,
-    /// Soft background in nearly empty cells, if any.
+    /// Soft background in occupied cells, if any.
     pub background: Option<Background>,
     /// Convergence.
     pub criteria: Criteria,

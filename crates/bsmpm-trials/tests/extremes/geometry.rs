@@ -5,7 +5,7 @@ use crate::physics::solver::Skyline;
 use crate::scenes::Collapse;
 use crate::solver::Run;
 use crate::table::Found;
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::Support;
 use bsmpm::control::Stepper;
 use bsmpm::kinematics::PlaneStrain;
@@ -28,11 +28,7 @@ fn inner_stress(shift: f64, background: f64) -> Vec<f64> {
             .body([2..10, 0..4], 3, 1.0, |x| x * 0.0)
             .support(Support::fixed(1, false))
             .gravity(2.0, 0.0);
-    scene.model.background = (background > 0.0).then_some(Background {
-        kind: Kind::Strain,
-        coefficient: background,
-        extent: Extent::Occupied,
-    });
+    scene.model.background = (background > 0.0).then_some(Background { coefficient: background });
     let inside = |x: &Vector<2>| (x[0] - 1.5).abs() < 0.5 && (x[1] - 0.5).abs() < 0.25;
     let points = &mut scene.points;
     let inner: HashSet<u64> = (0..points.len()).filter(|&p| inside(&points.x[p])).map(|p| points.id[p]).collect();

@@ -1,4 +1,4 @@
-//! The quadratic forms of the background over a cell, exact: products of one-dimensional integrals.
+//! The strain form of the background over a cell, exact: products of one-dimensional integrals.
 
 use super::integrals::{FormProducts, Integrals};
 use super::tensor::TensorForms;
@@ -6,28 +6,13 @@ use crate::grid::Grid;
 use crate::lanes::{self, InLanes, LANES, Lanes, Simd};
 use std::collections::BTreeMap;
 
-/// A form within a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
-    /// int eps : eps dV, eps the symmetric gradient
-    Strain,
-    /// int sum_ij h_i h_j (d2u / dx_i dx_j)^2 dV
-    Curvature,
-}
-
 /// The forms of cells, by number.
 #[derive(Clone, Debug)]
 pub(super) enum CellForms {
     /// one for all cells whose breakpoints lie alike
     Blocks(Vec<CellBlock>),
-    /// of each cell, of the strain in space
+    /// of each cell, in space
     ByAxes(TensorForms),
-}
-
-impl Default for CellForms {
-    fn default() -> Self {
-        Self::Blocks(Vec::new())
-    }
 }
 
 impl CellForms {
@@ -42,7 +27,7 @@ impl CellForms {
             Self::Blocks(blocks) => {
                 let size = products.len() / numbers.len();
                 for (number, (product, u)) in numbers.zip(products.chunks_mut(size).zip(u.chunks(size))) {
-                    blocks[number].multiply(u, product);
+                    blocks[number].multiply(u.as_flattened(), product.as_flattened_mut());
                 }
             }
             Self::ByAxes(forms) => forms.multiply(numbers, u.as_flattened(), products.as_flattened_mut()),
@@ -50,53 +35,28 @@ impl CellForms {
     }
 
     /// Adds `factor` times a form to a patch's block of D unknowns a node.
-    pub(super) fn add_to<const D: usize>(&self, number: usize, factor: f64, block: &mut [f64]) {
+    pub(super) fn add_to(&self, number: usize, factor: f64, block: &mut [f64]) {
         match self {
-            Self::Blocks(blocks) => blocks[number].add_to::<D>(factor, block),
+            Self::Blocks(blocks) => blocks[number].add_to(factor, block),
             Self::ByAxes(forms) => forms.add_to(number, factor, block),
         }
     }
 }
 
-/// The block of a cell, m^(D-2), row-major and symmetric to the last bit.
+/// The block of a cell, m^(D-2), row-major, D (q+1)^D square and symmetric to the last bit. Seven zeros follow it, so
+/// that vectors of eight may reach beyond its end.
 #[derive(Clone, Debug)]
-pub(super) enum CellBlock {
-    /// (q+1)^D square, equal for every component, which do not couple
-    Scalar(Vec<f64>),
-    /// D (q+1)^D square, and behind it seven zeros, so that vectors of eight may reach beyond the end
-    Coupled(Vec<f64>),
-}
+pub(super) struct CellBlock(Vec<f64>);
 
 impl CellBlock {
-    /// Adds `factor` times it to a patch's block of D unknowns a node.
-    fn add_to<const D: usize>(&self, factor: f64, block: &mut [f64]) {
-        match self {
-            Self::Coupled(form) => block.iter_mut().zip(form).for_each(|(sum, value)| *sum += factor * value),
-            Self::Scalar(form) => {
-                let size = form.len().isqrt();
-                for (entry, value) in form.iter().enumerate() {
-                    let (a, b) = (entry / size, entry % size);
-                    for i in 0..D {
-                        block[(a * D + i) * size * D + b * D + i] += factor * value;
-                    }
-                }
-            }
-        }
+    /// Adds `factor` times the block to a patch's block of D unknowns a node.
+    fn add_to(&self, factor: f64, block: &mut [f64]) {
+        block.iter_mut().zip(&self.0).for_each(|(sum, value)| *sum += factor * value);
     }
 
-    /// What it makes of the nodes' `u`, into `product`.
-    fn multiply<const D: usize>(&self, u: &[[f64; D]], product: &mut [[f64; D]]) {
-        match self {
-            Self::Scalar(form) => {
-                for (sum, row) in product.iter_mut().zip(form.chunks_exact(u.len())) {
-                    let along = |i: usize| row.iter().zip(u).map(|(entry, u)| entry * u[i]).sum();
-                    *sum = std::array::from_fn(along);
-                }
-            }
-            Self::Coupled(form) => {
-                lanes::run(BlockProduct { form, u: u.as_flattened(), product: product.as_flattened_mut() });
-            }
-        }
+    /// Writes the block times the nodes' `u` into `product`.
+    fn multiply(&self, u: &[f64], product: &mut [f64]) {
+        lanes::run(BlockProduct { form: &self.0, u, product });
     }
 }
 
@@ -123,10 +83,8 @@ impl InLanes for BlockProduct<'_> {
     }
 }
 
-/// The blocks of a form, each made once: cells whose breakpoints lie alike have the same, up to round-off.
-pub(super) struct Forms<'a, const D: usize> {
-    grid: &'a Grid<D>,
-    form: Form,
+/// The blocks of the cells, each made once: cells whose breakpoints lie alike have the same, up to round-off.
+pub(super) struct Forms<const D: usize> {
     integrals: Integrals,
     alike: [Vec<usize>; D], // per axis and cell: the first of the cells next to each other that are alike
     numbers: BTreeMap<[usize; D], usize>, // of what was found, by the first of the cells alike
@@ -134,16 +92,16 @@ pub(super) struct Forms<'a, const D: usize> {
     pub found: CellForms,
 }
 
-impl<'a, const D: usize> Forms<'a, D> {
-    pub(super) fn new(grid: &'a Grid<D>, form: Form) -> Self {
+impl<const D: usize> Forms<D> {
+    pub(super) fn new(grid: &Grid<D>) -> Self {
         let integrals = Integrals::of(grid);
         let alike = std::array::from_fn(|axis| first_alike(&integrals.products[axis]));
-        // In space a block of the strain has 81² numbers, and in graded grids each cell its own.
-        let found = match form {
-            Form::Strain if D == 3 => CellForms::ByAxes(TensorForms::new(integrals.clone())),
-            _ => CellForms::default(),
+        // In space a block has 81² numbers, and in graded grids each cell its own.
+        let found = match D {
+            3 => CellForms::ByAxes(TensorForms::new(integrals.clone())),
+            _ => CellForms::Blocks(Vec::new()),
         };
-        Self { grid, form, integrals, alike, numbers: BTreeMap::new(), found }
+        Self { integrals, alike, numbers: BTreeMap::new(), found }
     }
 
     /// Number of a cell's form among those found.
@@ -154,12 +112,7 @@ impl<'a, const D: usize> Forms<'a, D> {
             CellForms::Blocks(blocks) => blocks,
         };
         *self.numbers.entry(cell).or_insert_with(|| {
-            blocks.push(match self.form {
-                Form::Strain => CellBlock::Coupled(self.integrals.strain(&cell)),
-                Form::Curvature => {
-                    CellBlock::Scalar(self.integrals.curvature(&cell, self.grid.cell_box(&cell).1.into()))
-                }
-            });
+            blocks.push(CellBlock(self.integrals.strain(&cell)));
             blocks.len() - 1
         })
     }

@@ -1,15 +1,17 @@
-//! Integrals of products of splines along the axes, whose products over the axes are the background's forms.
+//! Integrals of products of splines along the axes, whose products over the axes are the background's form.
 
 use crate::gauss::GAUSS;
 use crate::grid::shape::with_width;
 use crate::grid::{Grid, KnotVector};
 use crate::lanes::LANES;
 
-/// int N_a N_b, int N_a' N_b', int N_a'' N_b'', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major,
-/// (q + 1) square; m, 1/m, 1/m^3, 1, 1.
-pub(super) type FormProducts = [Vec<f64>; 5];
+/// int N_a N_b, int N_a' N_b', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major, (q + 1) square; m,
+/// 1/m, 1, 1.
+pub(super) type FormProducts = [Vec<f64>; KINDS];
+/// Kinds of integrals along an axis: of the functions, of their slopes, of the row's slope, of the column's.
+pub(super) const KINDS: usize = 4;
 /// The last two of them.
-pub(super) const MIXED: [usize; 2] = [3, 4];
+const MIXED: [usize; 2] = [2, 3];
 
 /// Integrals along the axes of all cells, whose products are those over cells.
 #[derive(Clone, Debug)]
@@ -30,18 +32,6 @@ impl Integrals {
             (0..nodes * nodes).map(|entry| along(entry / nodes) * width + along(entry % nodes)).collect()
         };
         Self { width, products: products(grid).into(), entries: (0..D).map(of_axis).collect() }
-    }
-
-    /// Row-major (q + 1)^D square, of a cell of that `size`.
-    pub(super) fn curvature<const D: usize>(&self, cell: &[usize; D], size: [f64; D]) -> Vec<f64> {
-        let mut block = vec![0.0; self.entries[0].len()];
-        for i in 0..D {
-            for j in 0..D {
-                let order = |axis| usize::from(axis == i) + usize::from(axis == j);
-                self.add(cell, size[i] * size[j], order, &mut block);
-            }
-        }
-        block
     }
 
     /// Row-major D (q + 1)^D square, with the room behind it: eps : eps is half of |grad u|^2, which does not couple
@@ -84,7 +74,7 @@ impl Integrals {
 }
 
 /// The integrals of every cell of every axis.
-pub(super) fn products<const D: usize>(grid: &Grid<D>) -> [Vec<FormProducts>; D] {
+fn products<const D: usize>(grid: &Grid<D>) -> [Vec<FormProducts>; D] {
     let of_axis = |axis: &KnotVector| {
         with_width!(axis.order() + 1, W => {
             (0..axis.cells()).map(|cell| of_cell::<W>(axis, cell)).collect()
@@ -99,16 +89,11 @@ fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> FormProducts {
     }
     let (lower, upper) = (axis.breakpoint(cell), axis.breakpoint(cell + 1));
     let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
-    // N' is at most quadratic in a cell: its central difference over any distance is N''.
-    let (behind, ahead) = (middle - half, middle + half);
-    let mut sums = [(); 5].map(|()| vec![0.0; W * W]);
+    let mut sums = [(); KINDS].map(|()| vec![0.0; W * W]);
     for (at, weight) in GAUSS {
         let (shift, weight) = (at * half, weight * half);
         let (N, dN) = axis.basis::<W>(middle + shift, cell);
-        let slope = |x: f64| axis.basis::<W>(x + shift, cell).1;
-        let (before, after) = (slope(behind), slope(ahead));
-        let ddN = std::array::from_fn(|a| (after[a] - before[a]) / (2.0 * half));
-        for (sum, (rows, columns)) in sums.iter_mut().zip([(N, N), (dN, dN), (ddN, ddN), (dN, N), (N, dN)]) {
+        for (sum, (rows, columns)) in sums.iter_mut().zip([(N, N), (dN, dN), (dN, N), (N, dN)]) {
             for (entry, value) in sum.iter_mut().enumerate() {
                 *value += weight * (rows[entry / W] * columns[entry % W]);
             }

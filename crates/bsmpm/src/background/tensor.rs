@@ -4,7 +4,7 @@
 //! evaluation would read from memory; products of the integrals along the axes need 108 numbers of a cell and half of
 //! the operations.
 
-use super::integrals::{Integrals, MIXED};
+use super::integrals::{Integrals, KINDS};
 use crate::grid::shape::with_width;
 use crate::lanes::{self, InLanes, Lanes, Simd};
 
@@ -15,9 +15,6 @@ const MOST: [usize; 2] = [4, 64];
 /// Numbers of eight cells by node, and by pair of functions along an axis.
 type Eights<S> = [Lanes<S>; MOST[1]];
 type AxisMatrix<S> = [Lanes<S>; MOST[0] * MOST[0]];
-
-/// Kinds of integrals along an axis: of the functions, of their slopes, of the row's slope, of the column's.
-const KINDS: [usize; 4] = [0, 1, MIXED[0], MIXED[1]];
 
 /// Kinds by axis of the square of a derivative.
 #[inline(always)]
@@ -38,7 +35,7 @@ fn half_unless(whole: bool) -> f64 {
 
 /// The matrix of each axis, by its kind.
 #[inline(always)]
-fn chosen<S: Simd>(matrices: &[[AxisMatrix<S>; KINDS.len()]; D], kinds: [usize; D]) -> [&AxisMatrix<S>; D] {
+fn chosen<S: Simd>(matrices: &[[AxisMatrix<S>; KINDS]; D], kinds: [usize; D]) -> [&AxisMatrix<S>; D] {
     [0, 1, 2].map(|axis| &matrices[axis][kinds[axis]])
 }
 
@@ -69,8 +66,8 @@ impl TensorForms {
         for (a, rows) in block.chunks_exact_mut(nodes * D * D).enumerate() {
             for b in 0..nodes {
                 let (row, column) = (along(a), along(b));
-                let of = |axis: usize, kind: usize| products[axis][KINDS[kind]][row[axis] * width + column[axis]];
-                let values: [[f64; KINDS.len()]; D] = [0, 1, 2].map(|axis| [0, 1, 2, 3].map(|kind| of(axis, kind)));
+                let of = |axis: usize, kind: usize| products[axis][kind][row[axis] * width + column[axis]];
+                let values: [[f64; KINDS]; D] = [0, 1, 2].map(|axis| [0, 1, 2, 3].map(|kind| of(axis, kind)));
                 for (i, j) in (0..D * D).map(|k| (k / D, k % D)) {
                     let term = |kinds: [usize; D]| (0..D).map(|axis| values[axis][kinds[axis]]).product::<f64>();
                     let squares = || (0..D).map(|k| term(across(k)) * half_unless(k == i)).sum();
@@ -107,9 +104,9 @@ impl<const W: usize> InLanes for TensorProduct<'_, W> {
         let nodes = W.pow(D as u32);
         let cell = |lane: usize| lane.min(self.cells.len() - 1);
         let none = [Lanes::splat(simd, 0.0); MOST[1]];
-        let mut matrices = [[[Lanes::splat(simd, 0.0); MOST[0] * MOST[0]]; KINDS.len()]; D];
+        let mut matrices = [[[Lanes::splat(simd, 0.0); MOST[0] * MOST[0]]; KINDS]; D];
         for (axis, kinds) in matrices.iter_mut().enumerate() {
-            for (matrix, kind) in kinds.iter_mut().zip(KINDS) {
+            for (kind, matrix) in kinds.iter_mut().enumerate() {
                 let products = &self.integrals.products[axis];
                 for (entry, value) in matrix[..W * W].iter_mut().enumerate() {
                     *value = Lanes::from_fn(simd, |lane| products[self.cells[cell(lane)][axis]][kind][entry]);

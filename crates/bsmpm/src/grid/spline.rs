@@ -103,15 +103,13 @@ impl KnotVector {
         self.knots[i + 2..=i + self.order].iter().sum::<f64>() / (self.order - 1) as f64
     }
 
-    /// Integral of function `i`, the length of its support over q + 1, and its mean place, that of its knots, m.
-    pub fn integral(&self, i: usize) -> (f64, f64) {
-        integral(&self.knots[i..=i + self.order + 1])
-    }
-
-    /// The same of function `i` of the splines of degree q - 1 on the same cells: function `a` of cell `c` is number
-    /// `c + a`.
+    /// Integral of function `i` of the splines of degree q - 1 on the same cells, the length of its support over q, and
+    /// its mean place, that of its knots, m: function `a` of cell `c` is number `c + a` (Curry and Schoenberg, 1966, J.
+    /// Anal. Math. 17, 71-107).
     pub fn lowered_integral(&self, i: usize) -> (f64, f64) {
-        integral(&self.knots[i + 1..=i + self.order + 1])
+        let knots = &self.knots[i + 1..=i + self.order + 1];
+        let length = (knots[self.order] - knots[0]) / self.order as f64;
+        (length, knots.iter().sum::<f64>() / knots.len() as f64)
     }
 
     /// Shortest cell that has a length, m.
@@ -174,11 +172,4 @@ impl KnotVector {
         }
         (N, dN)
     }
-}
-
-/// Integral of the function with these knots, and the mean of its place (Curry and Schoenberg, 1966, J. Anal. Math. 17,
-/// 71-107).
-fn integral(knots: &[f64]) -> (f64, f64) {
-    let last = knots.len() - 1;
-    ((knots[last] - knots[0]) / last as f64, knots.iter().sum::<f64>() / knots.len() as f64)
 }

@@ -225,7 +225,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 coupling.add(number, dilations);
             }
             if let Some(background) = &nodes.background {
-                background.add_to::<D>(number, &mut block);
+                background.add_to(number, &mut block);
             }
             add_mass((self.problem.model.mass, nodes), (shape, patch), &self.problem.points.mass, &mut block);
             solver.add(patch.first_node, &block);

@@ -46,8 +46,7 @@ pub fn add_point<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// Adds strips, rigid bodies, faces of the background and inertia to a matrix whose patches are assembled, and
-/// factorises it.
+/// Adds strips, rigid bodies and inertia to a matrix whose patches are assembled, and factorises it.
 pub fn complete<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     solver: &mut dyn LinearSolver,
@@ -57,9 +56,6 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
     problem.grips.assemble(solver);
     nodes.rigid.assemble(solver);
     nodes.contacts.assemble(solver, problem.halo);
-    if let Some(background) = &nodes.background {
-        background.assemble::<D>(solver);
-    }
     if let Some(inertia) = &nodes.inertia {
         let factor = |c: usize| match problem.model.mass {
             MassMatrix::Lumped => inertia.factor_of(c),

@@ -77,7 +77,7 @@ pub struct Nodes<const D: usize> {
     pub unknowns: usize,
     /// active nodes without mass, over all ranks
     pub massless_nodes: usize,
-    /// cells (ghost penalty: faces) with the soft background, over all ranks
+    /// cells with the soft background, over all ranks
     pub background_cells: usize,
     /// weight at and below which a node counts as massless
     threshold: f64,
@@ -112,12 +112,11 @@ impl<const D: usize> Nodes<D> {
         let weight = scatter_weight(weighting, shape, points, halo);
         let threshold = threshold(&weight, halo);
         let velocities = model.boundary.velocities(&model.grid);
-        let background =
-            model.background.map(|soft| soft.blocks::<K, D>(&model.grid, shape, points, &model.materials, halo));
+        let background = model.background.map(|soft| soft.blocks::<K, D>(&model.grid, shape, points, &model.materials));
         let fitted = (model.quadrature == Quadrature::Fitted)
             .then(|| quadrature::fitted::<K, D>((&model.grid, &model.boundary), shape, points, halo));
         let volume = fitted.as_deref().unwrap_or(&points.volume);
-        let (active, stiff) = supported(shape, volume, background.as_ref(), nodes, halo);
+        let (active, stiff) = supported(shape, volume, background.is_some(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
         let mut free: Vec<bool> =
             velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c))).collect();
@@ -374,34 +373,28 @@ fn scatter_weight<const D: usize>(
     halo.sum(&transfer::to_nodes(shape, |p| [weights[p]]))
 }
 
-/// Per node: touched by an occupied cell, and: touched by a point with a gradient or by the background, so that its
+/// Per node: touched by an occupied cell, and: touched by a point with a gradient or by a background, so that its
 /// stiffness is positive.
 fn supported<const D: usize>(
     shape: &Shape<D>,
     volume: &[f64],
-    background: Option<&Blocks>,
+    has_background: bool,
     nodes: usize,
     halo: &dyn Halo,
 ) -> (Vec<bool>, Vec<bool>) {
-    let mut touched = vec![0.0_f64; 2 * nodes]; // by a cell, by the background
-    for (number, patch) in shape.patches().iter().enumerate() {
-        let soft = background.is_some_and(|blocks| blocks.concerns(number));
-        for offset in shape.offsets() {
-            let marks = &mut touched[2 * (patch.first_node + offset)..][..2];
-            marks[0] = 1.0;
-            marks[1] = marks[1].max(f64::from(u8::from(soft)));
-        }
+    let mut touched = vec![0.0_f64; nodes];
+    for patch in shape.patches() {
+        shape.offsets().iter().for_each(|offset| touched[patch.first_node + offset] = 1.0);
     }
-    for node in background.into_iter().flat_map(Blocks::face_nodes) {
-        touched[2 * node + 1] = 1.0;
-    }
-    halo.max(&mut touched, 2);
+    halo.max(&mut touched, 1);
+    let touched: Vec<bool> = touched.into_iter().map(|mark| mark > 0.0).collect();
     let stiff = halo.sum(&transfer::squared_gradients(shape, |p| volume[p]));
     let mut stiffest = [stiff.iter().copied().fold(0.0, f64::max)];
     halo.maximum(&mut stiffest);
     let above = MASSLESS * stiffest[0];
-    let held = stiff.iter().zip(touched.chunks_exact(2)).map(|(&stiff, marks)| stiff > above || marks[1] > 0.0);
-    (touched.chunks_exact(2).map(|marks| marks[0] > 0.0).collect(), held.collect())
+    let is_stiff = |(&stiff, &touched): (&f64, &bool)| stiff > above || (has_background && touched);
+    let stiff = stiff.iter().zip(&touched).map(is_stiff).collect();
+    (touched, stiff)
 }
 
 /// Body force (step 2d): sum_p N_Ip m_p g(t + dt), and that of still water.

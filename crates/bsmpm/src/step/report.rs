@@ -45,7 +45,7 @@ pub struct StepReport {
     pub unknowns: usize,
     /// active nodes without mass, whose velocity and averages count as zero
     pub massless_nodes: usize,
-    /// cells (ghost penalty: faces) with the soft background, over all ranks
+    /// cells with the soft background, over all ranks
     pub background_cells: usize,
     /// whether the forces alone decided: the methods led on no further, and forces balanced far below their tolerance
     pub settled: bool,

@@ -124,7 +124,7 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         mirror(size * D, &mut part.block);
         add_mass((model.mass, self.nodes), (shape, patch), &points.mass, &mut part.block);
         if let Some(background) = &self.nodes.background {
-            background.add_to::<D>(number, &mut part.block);
+            background.add_to(number, &mut part.block);
         }
         part
     }

@@ -2,7 +2,7 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::grid::Shape;
@@ -37,7 +37,7 @@ fn loaded<K: Kinematics<D>, const D: usize>(method: Stabilisation, regime: Regim
     let mut scene = Scene::<K, D>::new(axes, Material::MohrCoulomb(soil), regime).stabilised(method);
     let cells = std::array::from_fn(|k| 0..if k == 0 { length } else { 2 });
     scene = scene.body(cells, 2, 1.0, |_| Vector::zeros()).support(Support::fixed(D - 1, false));
-    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { coefficient: 1e-3 });
     let mut random = Random::new(3);
     scene = scene.scattered(&mut random);
     scene.points.sort_by_cell(&scene.model.grid);

@@ -6,7 +6,6 @@ mod broyden;
 mod dilation;
 mod drainage;
 mod gap;
-mod ghost;
 mod indicators;
 mod kinematics;
 mod lanes;

@@ -198,28 +198,24 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         self
     }
 
-    /// A background, and a grid that reaches as far as it.
+    /// With this background.
     pub fn background(mut self, background: Option<Background>) -> Self {
         self.model.background = background;
-        self.reaching()
+        self
     }
 
     /// Another method of section 2.3, and a grid that reaches as far as its stiffness.
     pub fn stabilised(mut self, stabilisation: Stabilisation) -> Self {
         self.model.stabilisation = stabilisation;
-        self.reaching()
+        let grid = self.model.grid.clone();
+        let beyond = stabilisation.beyond(grid.order());
+        self.model.grid = grid.reaching(beyond);
+        self
     }
 
     /// Volumes that integrate linear functions exactly over interior cells.
     pub fn fitted(mut self) -> Self {
         self.model.quadrature = Quadrature::Fitted;
-        self
-    }
-
-    fn reaching(mut self) -> Self {
-        let Model { grid, background, stabilisation, .. } = self.model.clone();
-        let beyond = background.map_or(0, |background| background.kind.beyond());
-        self.model.grid = grid.clone().reaching(beyond.max(stabilisation.beyond(grid.order())));
         self
     }
 

@@ -2,7 +2,7 @@
 //! flow.
 
 use crate::support::scene::{METHODS, Scene, axis};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
@@ -25,7 +25,7 @@ fn pressed(method: Stabilisation) -> Points<2> {
         .support(Support::fixed(1, false));
     scene.model.weighting = Weighting::Volume;
     scene.model.criteria = Criteria { energy: 1e-6, force: 1e-4, max_iterations: 1000 };
-    let soft = Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied };
+    let soft = Background { coefficient: 1e-3 };
     scene = scene.background(Some(soft));
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 3.0].into(), &[1.0, 3.0].into(), 4);
     let path = Path { rows: vec![(1.0, [0.0, -0.5].into())] };

@@ -4,7 +4,7 @@
 use super::bar::{PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::{Load, Path, Strip, Support, surface};
 use bsmpm::control::Stepper;
 use bsmpm::energy::{Books, Stored};
@@ -154,7 +154,7 @@ fn a_collapse_with_friction_closes() {
         (Stabilisation::ConsistentFBar, Separation::Closing),
     ] {
         let mut scene = collapse(method, separation);
-        scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-4, extent: Extent::Occupied });
+        scene.model.background = Some(Background { coefficient: 1e-4 });
         let course = kept(scene, 2e-3, 0.3);
         tell(&format!("{method:?}"), &course);
         let flows = course.books.flows;
@@ -221,7 +221,7 @@ fn footing(method: Stabilisation) -> Scene<PlaneStrain, 2> {
         .support(Support::fixed(1, false))
         .stabilised(method);
     scene.model.weighting = Weighting::Volume;
-    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { coefficient: 1e-3 });
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
     let path = Path { rows: vec![(1.0, [0.0, -0.05].into())] };
     scene.strip(Strip { contact: None, points, normal: Some([0.0, 1.0].into()), path, penalty: 4e9 })

@@ -1,7 +1,7 @@
 //! What must not matter: side, axis, place and units; and what must hardly matter: the soft background.
 
 use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::Support;
 use bsmpm::grid::KnotVector;
 use bsmpm::kinematics::PlaneStrain;
@@ -176,18 +176,9 @@ fn the_soft_background_changes_a_filled_elastic_block_by_the_order_of_its_coeffi
     let plain = settled(None);
     let scale = plain.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
     for coefficient in [1e-5, 1e-3, 1e-2] {
-        let change = |kind, extent| {
-            let soft = settled(Some(Background { kind, coefficient, extent }));
-            soft.u.iter().zip(&plain.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / scale
-        };
-        let kinds = [Kind::Strain, Kind::Curvature, Kind::GhostPenalty];
-        let [laplacian, curvature, ghost] = kinds.map(|kind| change(kind, Extent::Occupied));
-        println!(
-            "coefficient {coefficient:.0e}: displacement changes by {laplacian:.1e}, {curvature:.1e}, {ghost:.1e}"
-        );
-        // E / G = 2.6: in shear the Laplacian has the stiffness E. Measured 1.1, 2.2 and .93.
-        assert!(laplacian <= 2.6 * coefficient && curvature <= 2.6 * coefficient);
-        assert!(ghost <= 2.6 * coefficient);
-        assert_eq!(kinds.map(|kind| change(kind, Extent::PartlyFilled)), [0.0; 3]);
+        let soft = settled(Some(Background { coefficient }));
+        let change = soft.u.iter().zip(&plain.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / scale;
+        println!("coefficient {coefficient:.0e}: displacement changes by {change:.1e}");
+        assert!((0.7..1.3).contains(&(change / coefficient))); // measured .98 to .99
     }
 }

@@ -1,7 +1,7 @@
 //! Newton's method: quadratic convergence through plasticity and F-bar, and the same equilibrium as the secants'.
 
 use crate::support::scene::{Scene, axis};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::control::Accepted;
 use bsmpm::kinematics::PlaneStrain;
@@ -24,7 +24,7 @@ fn indented(nonlinear: Nonlinear, method: Stabilisation) -> (Plane, Vec<Accepted
         .stabilised(method);
     scene.model.weighting = Weighting::Volume;
     scene.model.criteria = Criteria { energy: 1e-16, force: 1e-9, max_iterations: 400 };
-    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { coefficient: 1e-3 });
     scene.model.nonlinear = nonlinear;
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.5].into(), &[1.0, 1.5].into(), 3);
     let path = Path { rows: vec![(1.0, [0.0, -0.1].into())] };

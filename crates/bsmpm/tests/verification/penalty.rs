@@ -1,7 +1,7 @@
 //! The penalty of rigid strips is a means: what a collapse pressure feels of it falls as the penalty grows.
 
 use crate::support::scene::{Scene, axis};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
@@ -25,7 +25,7 @@ fn pressure(factor: f64) -> f64 {
         .stabilised(Stabilisation::FBar);
     scene.model.weighting = Weighting::Volume;
     scene.model.criteria = Criteria { energy: 1e-10, force: 1e-6, max_iterations: 1000 };
-    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { coefficient: 1e-3 });
     let at = |x: f64, y: f64| Vector::<2>::new(x, y);
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 2.0), &at(1.0, 2.0), 4);
     let path = Path { rows: vec![(1.0, at(0.0, -0.4))] };

@@ -1,7 +1,7 @@
 //! Rigid strips, tractions and point loads: against exact stress, equilibrium of the whole, and steps that are cut.
 
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::{Load, Path, Strip, Support, SurfacePoint, surface};
 use bsmpm::control::Accepted;
 use bsmpm::error::StepError;
@@ -25,7 +25,7 @@ fn block(cells: [usize; 2], order: usize) -> Plane {
         .rollers(0..2);
     scene.model.weighting = Weighting::Volume;
     scene.model.criteria.force = 1e-12;
-    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { coefficient: 1e-3 });
     scene.model.boundary.supports.retain(|support| !(support.axis == 1 && support.upper));
     scene
 }

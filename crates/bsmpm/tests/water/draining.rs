@@ -2,7 +2,7 @@
 
 use super::{M, Plane, at, column, flowing, geometric, run, settlement};
 use crate::support::scene::{axis, hencky};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::surface;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::kinematics::PlaneStrain;
@@ -46,7 +46,7 @@ fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
     ];
     for (law, exact) in cases {
         let mut scene = column(20, 0.999, 0.5 * M, law);
-        let soft = Background { kind: Kind::Strain, coefficient: 1e-2, extent: Extent::PartlyFilled };
+        let soft = Background { coefficient: 1e-2 };
         scene = scene.background(Some(soft));
         scene.model.weighting = Weighting::Volume;
         (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
@@ -64,7 +64,7 @@ fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
         let lost: f64 = (0..scene.points.len()).map(volume).sum();
         let out = scene.points.surface.crossed.out() / lost - 1.0;
         println!("{law:?}: settlement off by {errors:.4?}, {iterations} iterations, water by {out:.1e}");
-        assert!(errors.iter().all(|error| error.abs() <= 0.0135) && out.abs() <= 2e-6);
+        assert!(errors.iter().all(|error| error.abs() <= 0.007) && out.abs() <= 2e-6);
     }
 }
 

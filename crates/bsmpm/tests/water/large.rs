@@ -1,7 +1,7 @@
 //! Consolidation by large strains, against a solution by lines (200 and 400 cells, extrapolated).
 
 use super::{DENSITY, M, Plane, WEIGHT, column_of, geometric, run};
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
@@ -22,7 +22,7 @@ const ACROSS: usize = 2;
 fn settling(cells: usize, load: f64, law: PermeabilityLaw) -> Plane {
     let mut scene = column_of([ACROSS, cells], 0.999, load, law)
         .stabilised(Stabilisation::ConsistentFBar)
-        .background(Some(Background { kind: Kind::Strain, coefficient: 1e-2, extent: Extent::PartlyFilled }));
+        .background(Some(Background { coefficient: 1e-2 }));
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
     scene
 }

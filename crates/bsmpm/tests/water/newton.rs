@@ -5,7 +5,7 @@ use super::{DENSITY, Plane, at, flowing};
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
 use crate::support::solver::Skyline;
-use bsmpm::background::{Background, Extent, Kind};
+use bsmpm::background::Background;
 use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::error::StepError;
@@ -40,7 +40,7 @@ fn wet<K: Kinematics<D>, const D: usize>(
     let mut scene = Scene::<K, D>::new(axes, Material::MohrCoulomb(soil), regime).stabilised(method);
     scene = scene.body([const { 0..2 }; D], 3, 1.0, |_| Vector::zeros()).support(Support::fixed(D - 1, false));
     scene = scene.gravity(10.0, 0.0);
-    scene.model.background = Some(Background { kind: Kind::Strain, coefficient: 1e-3, extent: Extent::Occupied });
+    scene.model.background = Some(Background { coefficient: 1e-3 });
     // None of these points is so near to saturation that its permeability has a bounded slope in the derivative.
     let mut random = Random::new(5);
     scene = scene.scattered(&mut random);
