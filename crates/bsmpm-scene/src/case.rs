@@ -27,11 +27,11 @@ use crate::grid::{GridSpec, Line};
 use crate::region::Region;
 use crate::words::{AnalysisType, Factor, FrameField, Ksp, Pc};
 use bsmpm::boundary::Contact;
+use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::extension::ExtendedSplines;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
 

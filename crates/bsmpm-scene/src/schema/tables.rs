@@ -9,9 +9,9 @@ use crate::words::{
     Accuracy, AnalysisType, BACKGROUND_CELLS, BACKGROUND_KIND, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear,
     Order, Pc, Word,
 };
+use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::extension::ExtendedSplines;
 use bsmpm::step::mass::MassMatrix;
 use std::ops::Bound::{Excluded, Included};
 
@@ -181,7 +181,7 @@ static SOLVER: Table = Table {
             "extension",
             Choice(ExtendedSplines::WORDS),
             Optional,
-            "extended B-splines at the edge of bodies; quasi-static linear, dynamic off",
+            "extended B-splines at the edge of bodies; linear unless dynamic or cubic, which are off",
         ),
         key(
             "background",

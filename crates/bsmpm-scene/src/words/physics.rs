@@ -1,8 +1,8 @@
 //! Words of choices that the physics defines.
 
+use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::extension::ExtendedSplines;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::water::flow::PermeabilityLaw;
 

@@ -97,6 +97,20 @@ impl<const D: usize> RigidContacts<D> {
         self.bodies.iter().any(|at| at.body.is_free())
     }
 
+    /// Per node of the window: whether a cell with a point in contact with a body touches it; empty without bodies. One
+    /// exchange with the neighbours where there are bodies.
+    pub fn touched_nodes(&self, nodes: usize, halo: &dyn Halo) -> Vec<bool> {
+        if self.is_empty() {
+            return Vec::new();
+        }
+        let mut marks = vec![0.0; nodes];
+        for point in self.points.iter().filter(|point| point.grip != Grip::Open) {
+            self.offsets.iter().for_each(|offset| marks[point.first_node + offset] = 1.0);
+        }
+        halo.max(&mut marks, 1);
+        marks.into_iter().map(|mark| mark > 0.0).collect()
+    }
+
     /// Whether any point may rub.
     pub fn rubs(&self) -> bool {
         self.bodies.iter().any(|at| at.body.friction > 0.0)

@@ -2,8 +2,8 @@
 //!
 //! A spline function that reaches only into nearly empty cells ("outer") has next to no stiffness, and its forces are
 //! integrated badly. Its coefficient is therefore no unknown: it is tied to the functions of the nearest full cell, its
-//! home, so that the displacement goes on linearly beyond that cell (Höllig, Reif and Wipper, 2001, SIAM J. Numer. Anal.
-//! 39, 442-462; Höllig and Reif, 2003, Numer. Math. 94, 515-538, for graded knots):
+//! home, so that the displacement goes on linearly beyond that cell (Höllig, Reif and Wipper, 2001, SIAM J. Numer.
+//! Anal. 39, 442-462; Höllig and Reif, 2003, for graded knots):
 //!
 //! ```text
 //! u_j = sum_i e_ij u_i,   e_ij = product over the axes of e_ij^axis,
@@ -18,6 +18,16 @@
 
 use super::{Grid, KnotVector};
 
+/// Which functions of nearly empty cells are tied to those of full ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExtendedSplines {
+    /// None: all functions that hold material are unknowns.
+    #[default]
+    Off,
+    /// Outer functions, so that the displacement goes on linearly beyond the nearest full cell.
+    Linear,
+}
+
 /// Largest distance, in cells along an axis, between an outer function's support and its home.
 pub const REACH: usize = 3;
 
@@ -27,6 +37,8 @@ const RESOLUTION: f64 = 1e-6;
 /// How near a cell is to a function; smaller is nearer, and equal distances are ordered by the number of the cell.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Nearness {
+    /// 0 where no C0 line lies between the support and the cell, 1 where one does
+    pub beyond_line: f64,
     /// squared distance in cells between the support and the cell
     pub apart: f64,
     /// squared distance between the Greville abscissa and the middle of the cell in edges of the cell, rounded
@@ -49,23 +61,25 @@ impl<const D: usize> Homes<D> {
         Self { sides: grid.axes().each_ref().map(sides), kept_faces }
     }
 
-    /// How near a cell (global, along each axis) is to a function (global); `None` where the cell is no home of it: too
-    /// far away, beyond a C0 line, or off a face that the function must keep to.
+    /// How near a cell (global, along each axis) is to a function (global); `None` where it cannot be a home: too far
+    /// away, or off a face that the function must keep to.
     pub fn nearness(&self, grid: &Grid<D>, function: &[usize; D], cell: &[usize; D]) -> Option<Nearness> {
-        let (mut apart, mut off_centre, mut number) = (0, 0.0, 0);
+        let (mut is_on_side, mut apart, mut off_centre, mut number) = (true, 0, 0.0, 0);
         for axis in 0..D {
             let (knots, j, l) = (&grid.axes()[axis], function[axis], cell[axis]);
             let steps = if j < l { l - j } else { j.saturating_sub(l + knots.order()) };
-            if steps > REACH || !self.is_on_side(knots, axis, j, l) || !self.keeps_to_faces(knots, axis, j, l) {
+            if steps > REACH || !knots.has_length(l) || !self.keeps_to_faces(knots, axis, j, l) {
                 return None;
             }
+            is_on_side &= self.is_on_side(knots, axis, j, l);
             apart += steps * steps;
             let (lower, upper) = (knots.breakpoint(l), knots.breakpoint(l + 1));
             off_centre += ((knots.greville(j) - 0.5 * (lower + upper)) / (upper - lower)).powi(2);
             number = number * knots.cells() + l;
         }
         let off_centre = (off_centre / RESOLUTION).round();
-        Some(Nearness { apart: apart as f64, off_centre, cell: number as f64 })
+        let beyond_line = f64::from(u8::from(!is_on_side));
+        Some(Nearness { beyond_line, apart: apart as f64, off_centre, cell: number as f64 })
     }
 
     /// Whether no C0 line lies between the support of function `j` and cell `l`.
@@ -160,17 +174,20 @@ mod tests {
     }
 
     #[test]
-    fn no_home_lies_beyond_a_c0_line_but_for_the_function_on_it() {
+    fn homes_beyond_a_c0_line_come_last_but_for_the_function_on_it() {
         // Cells 0 1 2 | 4 5 6, the line at 3 with a cell without length, number 3, between its copies.
         let knots = KnotVector::graded(&[0.0, 1.0, 2.0, 3.0, 3.0, 4.0, 5.0, 6.0], 2).unwrap();
         assert_eq!(sides(&knots), [0, 0, 0, 1, 1, 1, 1]);
         let grid = Grid::new([knots.clone(), knots.clone()]).unwrap();
         let homes = Homes::of(&grid, [[false; 2]; 2]);
-        let is_home = |j: usize, l: usize| homes.nearness(&grid, &[j, 3], &[l, 2]).is_some();
+        let is_beyond = |j: usize, l: usize| homes.nearness(&grid, &[j, 3], &[l, 2]).unwrap().beyond_line == 1.0;
         // Function 3 ends at the line, function 4 is on it, function 5 begins there.
-        assert_eq!([2, 4].map(|l| is_home(3, l)), [true, false]);
-        assert_eq!([2, 4].map(|l| is_home(4, l)), [true, true]);
-        assert_eq!([2, 4].map(|l| is_home(5, l)), [false, true]);
+        assert_eq!([2, 4].map(|l| is_beyond(3, l)), [false, true]);
+        assert_eq!([2, 4].map(|l| is_beyond(4, l)), [false, false]);
+        assert_eq!([2, 4].map(|l| is_beyond(5, l)), [true, false]);
+        let [own_side, other_side] = [0, 4].map(|l| homes.nearness(&grid, &[3, 3], &[l, 2]).unwrap());
+        assert!(own_side < other_side, "though the other one is nearer");
+        assert!(homes.nearness(&grid, &[4, 3], &[3, 2]).is_none(), "a cell without length");
         let linear = KnotVector::uniform(1.0, 4, 1).unwrap();
         assert_eq!(sides(&linear), [0; 4]);
     }

@@ -1,8 +1,12 @@
 //! Step (2): extended B-splines. Functions that reach into nearly empty cells only are tied to those of full cells, see
 //! [`grid::extension`](crate::grid::extension) for the weights e_ij.
 //!
-//! A cell is full if its points fill at least 0.8 of it, and a function is outer if it is active and none of its cells
-//! is full. With u_I the inner coefficients, everything else of the step keeps its complete nodal arrays:
+//! A cell is full if its points fill at least 0.8 of it. A function is outer if it is active and none of its cells is
+//! full. Functions that touch points in contact with a rigid body are not tied: the body holds them, and what it
+//! presses on cannot follow a linear field. Cubic splines are left alone: next to a full cell they stay soft, so that
+//! ties neither stop the creep of their edge nor let a step converge as fast.
+//!
+//! With u_I the inner coefficients, everything else of the step keeps its complete nodal arrays:
 //!
 //! - displacements are extended, u = E u_I, before points deform ([`Extension::extend`]);
 //! - nodal forces are reduced, f_I + E^T f_J, before they are balanced ([`Extension::reduce`]);
@@ -11,7 +15,7 @@
 //! Ranks know the outer functions of their window. A tie whose surroundings other ranks see as well is *published*: all
 //! ranks know it, and exchange its displacement and force, so that sums run in the same order on any number of ranks.
 
-use crate::grid::extension::{Homes, Nearness, REACH, weights};
+use crate::grid::extension::{ExtendedSplines, Homes, Nearness, REACH, weights};
 use crate::grid::{Grid, Shape};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -22,16 +26,6 @@ use std::collections::BTreeMap;
 
 /// Part of a cell that its points fill from which on it is full. Of 1 a cell would not be full once it has shrunk.
 const FULL: f64 = 0.8;
-
-/// Which functions are tied to others in the case of a nearly empty support.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ExtendedSplines {
-    /// None.
-    #[default]
-    Off,
-    /// Outer functions, so that the displacement goes on linearly.
-    Linear,
-}
 
 /// An outer function that is tied to the functions of its home.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,7 +75,7 @@ impl<const D: usize> Extension<D> {
         model: &Model<K, D>,
         shape: &Shape<D>,
         points: &Points<D>,
-        active: &[bool],
+        may_be_tied: &[bool],
         free: &mut [bool],
         halo: &dyn Halo,
     ) -> Option<Self> {
@@ -92,7 +86,7 @@ impl<const D: usize> Extension<D> {
         let full = full_cells::<K, D>(grid, shape, points);
         let is_inner = inner_functions(grid, shape, &full, halo);
         let movable = |node: usize| free[Nodal::<D>::of(node)].contains(&true);
-        let is_outer = |node: usize| active[node] && !is_inner[node] && movable(node);
+        let is_outer = |node: usize| may_be_tied[node] && !is_inner[node] && movable(node);
         let outer: Vec<usize> = halo.owned().nodes().filter(|&node| is_outer(node)).collect();
         let mut counts = [outer.len() as f64, 0.0];
         halo.reduce(&mut counts[..1]);
@@ -240,7 +234,7 @@ fn full_cells<K: Kinematics<D>, const D: usize>(grid: &Grid<D>, shape: &Shape<D>
     full
 }
 
-/// Per node of the window: whether a cell of its function is full, on any rank.
+/// Per node of the window: whether a cell of its function is full, on any rank. One exchange with the neighbours.
 fn inner_functions<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, full: &[bool], halo: &dyn Halo) -> Vec<bool> {
     let mut marks = vec![0.0; grid.nodes()];
     for patch in shape.patches().iter().filter(|patch| full[patch.cell]) {
@@ -299,8 +293,9 @@ impl<const D: usize> HomeSearch<'_, D> {
             }
             cell
         };
-        let full = (0..count).map(cell_at).filter(|cell| self.full[grid.cell_index(cell)]);
-        full.filter_map(|cell| self.homes.nearness(grid, &place, &cell))
+        let homes = (0..count).map(cell_at).filter(|cell| self.full[grid.cell_index(cell)]);
+        homes
+            .filter_map(|cell| self.homes.nearness(grid, &place, &cell))
             .min_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal))
     }
 
@@ -330,12 +325,13 @@ impl<const D: usize> HomeSearch<'_, D> {
         }
         message.clear();
         for candidate in &all {
-            let Some(Nearness { apart, off_centre, cell }) = self.nearest(candidate.number) else { continue };
-            message.extend([candidate.number as f64, apart, off_centre, cell]);
+            let Some(nearest) = self.nearest(candidate.number) else { continue };
+            let Nearness { beyond_line, apart, off_centre, cell } = nearest;
+            message.extend([candidate.number as f64, beyond_line, apart, off_centre, cell]);
         }
         let mut nearest: BTreeMap<usize, Nearness> = BTreeMap::new();
-        for told in halo.gather(&message).chunks_exact(4) {
-            let other = Nearness { apart: told[1], off_centre: told[2], cell: told[3] };
+        for told in halo.gather(&message).chunks_exact(5) {
+            let other = Nearness { beyond_line: told[1], apart: told[2], off_centre: told[3], cell: told[4] };
             let known = nearest.entry(told[0] as usize).or_insert(other);
             if other < *known {
                 *known = other;

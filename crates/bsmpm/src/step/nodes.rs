@@ -120,7 +120,24 @@ impl<const D: usize> Nodes<D> {
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
         let mut free: Vec<bool> =
             velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c))).collect();
-        let extension = Extension::of::<K>(model, shape, points, &active, &mut free, halo);
+        let rigid = match model.boundary.rigid.is_empty() {
+            true => RigidContacts::default(),
+            false => {
+                let around = Surroundings {
+                    bodies: (&model.boundary.rigid, &points.surface.bodies),
+                    reaching: model.reaching(points),
+                    shape,
+                    body_force: model.body_force(t + dt).unwrap_or_else(Vector::zeros),
+                    free: &free,
+                    dynamic: model.regime == Regime::Dynamic,
+                };
+                let young = |p: usize| model.young(points, p);
+                RigidContacts::of(&around, young, (t, dt), last, halo)?
+            }
+        };
+        let mut may_be_tied = active.clone();
+        may_be_tied.iter_mut().zip(rigid.touched_nodes(nodes, halo)).for_each(|(may, touched)| *may &= !touched);
+        let extension = Extension::of::<K>(model, shape, points, &may_be_tied, &mut free, halo);
         let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
         let contacts = match model.boundary.has_contact() {
             true => Contacts::of((&model.boundary, &model.grid), (shape, points), &free, (t, last), halo),
@@ -148,21 +165,6 @@ impl<const D: usize> Nodes<D> {
         let window = (&model.grid, &active[..]);
         let surfaces = (&model.surfaces(), &points.surface);
         let followers = load::add_forces(surfaces, points.anchored(), window, t + dt, halo, &mut f_ext)?;
-        let rigid = match model.boundary.rigid.is_empty() {
-            true => RigidContacts::default(),
-            false => {
-                let around = Surroundings {
-                    bodies: (&model.boundary.rigid, &points.surface.bodies),
-                    reaching: model.reaching(points),
-                    shape,
-                    body_force: model.body_force(t + dt).unwrap_or_else(Vector::zeros),
-                    free: &free,
-                    dynamic: model.regime == Regime::Dynamic,
-                };
-                let young = |p: usize| model.young(points, p);
-                RigidContacts::of(&around, young, (t, dt), last, halo)?
-            }
-        };
         if let Some(inertia) = inertia.as_mut().filter(|_| !rigid.moving.is_empty()) {
             inertia.moving.resize(rigid.moving.len(), false);
             inertia.moving.iter_mut().zip(&rigid.moving).for_each(|(moving, by_body)| *moving |= by_body);

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! The pattern of the matrix stays as it is. An entry of two homes that lie farther apart than nodes couple in it is
-//! replaced by its absolute value on both diagonals: what that adds is positive semidefinite, the matrix stays definite,
-//! and the quasi-Newton secants (Newton's Krylov method) correct it like everything else that K_0 leaves out.
+//! replaced by its absolute value on both diagonals: what that adds is positive semidefinite, so that the matrix stays
+//! definite, and the quasi-Newton secants (Newton's Krylov method) correct it like all that K_0 leaves out.
 //!
 //! An entry is summed by columns of cells, in their order, so that it has the same bits on any number of ranks.
 
