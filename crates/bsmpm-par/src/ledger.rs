@@ -201,9 +201,13 @@ impl Ledger {
         if let Some(water) = &report.water {
             sizes.insert("water_unknowns".into(), water.unknowns as u64);
         }
-        for (name, count) in
-            [("most_massless_nodes", report.massless_nodes), ("most_background_cells", report.background_cells)]
-        {
+        let most = [
+            ("most_massless_nodes", report.massless_nodes),
+            ("most_background_cells", report.background_cells),
+            ("most_tied_functions", report.tied_functions),
+            ("most_untied_functions", report.untied_functions),
+        ];
+        for (name, count) in most {
             let most = sizes.entry(name.into()).or_default();
             *most = (*most).max(count as u64);
         }

@@ -11,10 +11,11 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Keys with which a run may go on changed: they say how far, how finely and how it is told, not what is solved.
-const FREE: [&str; 16] = [
+const FREE: [&str; 17] = [
     "title",
     "analysis.dt",
     "analysis.steps",
+    "solver.extension",
     "solver.nonlinear",
     "solver.tolerance",
     "solver.force_tolerance",

@@ -7,6 +7,7 @@
 //! | --- | --- | --- |
 //! | (1) | shape functions and topology | [`grid::spline`], [`grid::shape`] |
 //! | (2) | points to nodes | [`step::nodes`] |
+//! | | functions of nearly empty cells, which are no unknowns (beyond the paper) | [`step::extension`] |
 //! | (3), (7)-(9) | quasi-Newton iteration, both convergence measures | [`solve`], [`solve::quasi_newton`] |
 //! | | where it ends, and what is round-off | [`solve::convergence`], [`solve::round_off`] |
 //! | | Newton's method where it stalls | [`solve::newton`] |
@@ -14,6 +15,7 @@
 //! | (4) | trial deformation, F-bar | [`step::trial`] |
 //! | (5) | out-of-balance force; what points weigh in it | [`step::residual`]; [`quadrature`] |
 //! | (6) | stiffness K_0 at the first guess, complete derivative | [`step::stiffness`], [`solve::linearised`] |
+//! | | both without the functions that are no unknowns | [`step::reduced_system`] |
 //! | (10), (11) | grid kinematics, converged points | [`step::commit`] |
 //!
 //! [`boundary`] holds and loads the bodies, [`initial`] gives them stress at the start. [`control`] cuts and grows the

@@ -3,6 +3,7 @@
 use super::Beginning;
 use crate::checkpoint::Refusal;
 use crate::ledger;
+use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm_io::checkpoint::FoundCheckpoint;
 use bsmpm_io::directory::Existing;
 use bsmpm_io::exit;
@@ -129,6 +130,17 @@ pub(super) fn futile(restarts: &[ManifestRestart], step: u64) -> Result<(), Refu
          tries again"
     );
     Err(Refusal::new(exit::STALLED, reason))
+}
+
+/// Warns if the run began in a version that had no extended splines, and goes on with them.
+pub(super) fn new_extension(past: &Manifest, case: &Case) -> Option<String> {
+    let began_without = !past.sizes.contains_key("most_tied_functions");
+    let goes_on_with = case.solver.extended_splines == ExtendedSplines::Linear;
+    (began_without && goes_on_with).then(|| {
+        "the run began in a version without extended splines and goes on with them, so displacements at the surface may \
+         change their rate. Set solver.extension = \"off\" to go on as before."
+            .into()
+    })
 }
 
 /// Why the run will not repeat to the bit, if so.

@@ -6,6 +6,7 @@ mod checkpoints;
 mod command_line;
 mod consolidation;
 mod convergence;
+mod cut_cells;
 mod energy;
 mod energy_made;
 mod estimate;

@@ -61,16 +61,15 @@ pub struct Extension<const D: usize> {
     ties: Vec<Tie<D>>, // ascending by number
     of_node: Vec<u32>, // of every node of the window: place of its tie, and one; 0: none
     published: usize,
-    /// outer functions without a full cell near enough, over all ranks: they stay unknowns
-    pub left_over: usize,
     /// outer functions that are tied, over all ranks
-    pub outer: usize,
+    pub tied: usize,
+    /// outer functions without a full cell near enough, over all ranks: they stay unknowns
+    pub untied: usize,
 }
 
 impl<const D: usize> Extension<D> {
-    /// Ties the outer functions among the `active` nodes; their components leave `free`. `None` where no function of any
-    /// rank is tied. Two exchanges with the neighbours, three reductions at most, and two gatherings where ranks share
-    /// outer functions.
+    /// Ties the outer functions among the nodes that `may_be_tied`; their components leave `free`. `None` where no rank
+    /// has any. Two exchanges with the neighbours, two reductions, and two gatherings where ranks share outer functions.
     pub fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
@@ -114,8 +113,9 @@ impl<const D: usize> Extension<D> {
         }
         halo.reduce(&mut counts[1..]);
         extension.ties = ties;
-        (extension.outer, extension.left_over) = (counts[1] as usize, (counts[0] - counts[1]) as usize);
-        (extension.outer > 0).then_some(extension)
+        extension.tied = counts[1] as usize;
+        extension.untied = (counts[0] - counts[1]) as usize;
+        Some(extension)
     }
 
     /// The tie of a node of the window.

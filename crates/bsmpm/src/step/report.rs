@@ -47,6 +47,10 @@ pub struct StepReport {
     pub massless_nodes: usize,
     /// cells with the soft background, over all ranks
     pub background_cells: usize,
+    /// functions that are tied to those of full cells, over all ranks
+    pub tied_functions: usize,
+    /// functions of nearly empty cells alone that no full cell is near enough to tie, over all ranks
+    pub untied_functions: usize,
     /// whether the forces alone decided: the methods led on no further, and forces balanced far below their tolerance
     pub settled: bool,
     /// whether the first guess of the displacement led to convergence
@@ -96,6 +100,8 @@ impl StepReport {
             unknowns: nodes.unknowns,
             massless_nodes: nodes.massless_nodes,
             background_cells: nodes.background_cells,
+            tied_functions: nodes.extension.as_ref().map_or(0, |extension| extension.tied),
+            untied_functions: nodes.extension.as_ref().map_or(0, |extension| extension.untied),
             settled: found.settled,
             first_guess: found.first_guess,
             reactions: problem.model.boundary.reactions(&problem.model.grid, &found.reaction, problem.halo),

@@ -5,6 +5,7 @@ mod background;
 mod broyden;
 mod dilation;
 mod drainage;
+mod extension;
 mod gap;
 mod indicators;
 mod kinematics;

@@ -219,6 +219,12 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         self
     }
 
+    /// Functions of nearly empty cells are tied to those of full ones.
+    pub fn extended(mut self) -> Self {
+        self.model.extended_splines = ExtendedSplines::Linear;
+        self
+    }
+
     /// The halo of one rank.
     pub fn halo(&self) -> Alone {
         Alone { nodes: self.model.grid.nodes() }

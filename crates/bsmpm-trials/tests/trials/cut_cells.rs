@@ -1,0 +1,153 @@
+//! Cells that the surface cuts: results do not depend on where it cuts them, nor on the number of load steps, ranks or
+//! restarts.
+
+use crate::support::Scratch;
+use crate::support::cases::changed;
+use crate::support::results::{agree, at, history, last_frame, manifest};
+
+/// The slope of the README, in a grid whose cells its surface cuts.
+const SLOPE: &str = r#"
+geometry = "plane-strain"
+accuracy = "draft"
+analysis = { type = "quasi-static" }
+gravity = { acceleration = [0.0, -9.81], ramp = 1.0 }
+boundary = { bottom = "fixed", left = "roller", right = "roller" }
+[grid]
+lower = [0.0, 0.0]
+upper = [40.0, 12.0]
+[material.soil]
+model = "mohr-coulomb"
+young = "100 MPa"
+poisson = 0.3
+cohesion = "10 kPa"
+friction = 20.0
+dilation = 0.0
+unit_weight = "20 kN/m3"
+[[body]]
+material = "soil"
+polygon = [[0.0, 0.0], [TOE, 0.0], [CREST, 10.0], [0.0, 10.0]]
+[[history]]
+quantity = "max-displacement"
+"#;
+
+/// With the slope's foot at 32 m and `beyond` more.
+fn slope(beyond: f64) -> String {
+    let toe = changed(SLOPE, "TOE", &format!("{:?}", 32.0 + beyond));
+    changed(&toe, "CREST", &format!("{:?}", 12.0 + beyond))
+}
+
+/// m  largest displacement at the end.
+fn largest_displacement(scratch: &Scratch, set: &[&str]) -> f64 {
+    scratch.direct(&[&["case.toml", "-q", "-o", "out", "--force"], set].concat()).expect(0);
+    at(&history(&scratch.path("out")), "max-displacement", 1.0)
+}
+
+/// It was 7.64, 10.2, 25.3 and 40.2 mm without ties.
+#[test]
+fn a_stable_slope_moves_as_far_in_any_number_of_steps() {
+    let scratch = Scratch::with_case(&slope(0.0));
+    for steps in [10, 40, 100, 400] {
+        let found = largest_displacement(&scratch, &["--set", &format!("analysis.steps={steps}")]);
+        println!("{steps} steps: {found:e} m");
+        // No solution in closed form: 7.633 mm was found with every number.
+        assert!((found / 7.633e-3 - 1.0).abs() < 1e-3, "{steps} steps: {found:e}");
+    }
+    let sizes = manifest(&scratch.path("out")).sizes;
+    assert!(sizes["most_tied_functions"] > 0 && sizes["most_untied_functions"] == 0, "{sizes:?}");
+}
+
+#[test]
+fn a_stable_slope_moves_as_far_wherever_it_cuts_the_cells() {
+    let scratch = Scratch::new();
+    for offset in 0..20 {
+        scratch.write("case.toml", slope(f64::from(offset) / 20.0));
+        let found = largest_displacement(&scratch, &[]);
+        println!("{offset}/20 of a cell: {found:e} m");
+        // 7.626 to 7.634 mm were found.
+        assert!((found / 7.630e-3 - 1.0).abs() < 2e-3, "{offset}: {found:e}");
+    }
+}
+
+/// A bar between rollers, pressed at an end that lies inside a cell.
+const BAR: &str = r#"
+geometry = "plane-strain"
+[analysis]
+type = "quasi-static"
+steps = 1
+[grid]
+lower = [0.0, 0.0]
+upper = [4.0, 1.0]
+cell = 0.25
+order = "quadratic"
+[material.soil]
+model = "hencky"
+young = "100 MPa"
+poisson = 0.3
+density = 2000
+[[body]]
+material = "soil"
+box = { lower = [0.0, 0.0], upper = [END, 1.0] }
+points_per_cell = 3
+[[traction]]
+from = [END, 0.0]
+to = [END, 1.0]
+pressure = "10 kPa"
+[boundary]
+left = "roller"
+bottom = "roller"
+top = "roller"
+[solver]
+tolerance = 1e-14
+force_tolerance = 1e-10
+[stabilisation]
+method = "METHOD"
+"#;
+
+#[test]
+fn a_cut_bar_under_uniform_pressure_has_uniform_stress() {
+    let scratch = Scratch::new();
+    for method in ["none", "consistent-f-bar"] {
+        let mut largest = 0.0_f64;
+        for offset in 0..20 {
+            let end = 3.0 + f64::from(offset) / 80.0;
+            let text = changed(BAR, "METHOD", method).replace("END", &format!("{end:?}"));
+            scratch.write("case.toml", text);
+            scratch.direct(&["case.toml", "-q", "-o", "out", "--force"]).expect(0);
+            let frame = last_frame(&scratch.path("out"));
+            let stress = frame.real("stress", 4).expect("stress");
+            let error = |stress: &[f64]| (stress[0] / -10e3 - 1.0).abs();
+            largest = stress.chunks_exact(4).map(error).fold(largest, f64::max);
+        }
+        println!("{method}: largest error {largest:e}");
+        assert!(largest < 1e-4, "{method}: {largest:e}");
+    }
+}
+
+/// A wedge in space whose inclined face and end cut cells.
+fn wedge() -> String {
+    let solid = slope(0.3).replace("plane-strain", "solid").replace("[0.0, -9.81]", "[0.0, 0.0, -9.81]");
+    let grid =
+        changed(&solid, "[0.0, 0.0]\nupper = [40.0, 12.0]", "[0.0, 0.0, 0.0]\nupper = [40.0, 8.0, 12.0]\ncell = 2.0");
+    let extruded = changed(&grid, "polygon = [", "extrude = { along = \"y\", from = 0.0, to = 5.3, polygon = [");
+    let closed = changed(&extruded, "10.0]]", "10.0]] }");
+    changed(&closed, "right = \"roller\" }", "right = \"roller\", front = \"roller\" }")
+}
+
+#[test]
+fn ties_are_the_same_on_any_number_of_ranks_and_over_restarts() {
+    for case in [slope(0.3), wedge()] {
+        let exact = "\n[solver]\nlinear = \"mumps\"\nreproducible = true\n";
+        let scratch = Scratch::with_case(&(case + exact));
+        let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
+        for ranks in 1..=4 {
+            let whole = format!("whole{ranks}");
+            scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+            assert!(text("whole1") == text(&whole), "{ranks} ranks");
+        }
+        let on = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
+        scratch.mpirun(2, &[&on[..], &["--max-steps", "4"]].concat()).expect(75);
+        scratch.mpirun(3, &on).expect(0);
+        assert!(text("whole1") == text("part"), "from two ranks to three");
+        agree(&scratch.path("part"), &scratch.path("whole1"));
+    }
+}
