@@ -198,6 +198,13 @@ impl<const D: usize> Grid<D> {
         (1..D).fold(start, |index, axis| index * self.nodes_along(axis) + cell[axis] - self.window[axis].start)
     }
 
+    /// Functions (along each axis) of a cell (global), in the order of its nodes, axis 0 slowest.
+    pub fn functions_of(&self, cell: [usize; D]) -> impl Iterator<Item = [usize; D]> {
+        let width = self.order() + 1;
+        let digit = move |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
+        (0..self.cell_nodes()).map(move |k| std::array::from_fn(|axis| cell[axis] + digit(k, axis)))
+    }
+
     /// Offsets of a cell's nodes from its first one, axis 0 slowest: the paper's p2N, which is the same for all cells.
     pub fn offsets(&self) -> Vec<usize> {
         self.offsets_of(self.order() + 1)

@@ -114,9 +114,9 @@ fn a_cut_bar_under_uniform_pressure_has_uniform_stress() {
             scratch.write("case.toml", text);
             scratch.direct(&["case.toml", "-q", "-o", "out", "--force"]).expect(0);
             let frame = last_frame(&scratch.path("out"));
-            let stress = frame.real("stress", 4).expect("stress");
+            let stress = frame.real("stress", 6).expect("stress");
             let error = |stress: &[f64]| (stress[0] / -10e3 - 1.0).abs();
-            largest = stress.chunks_exact(4).map(error).fold(largest, f64::max);
+            largest = stress.chunks_exact(6).map(error).fold(largest, f64::max);
         }
         println!("{method}: largest error {largest:e}");
         assert!(largest < 1e-4, "{method}: {largest:e}");
@@ -136,7 +136,7 @@ fn wedge() -> String {
 #[test]
 fn ties_are_the_same_on_any_number_of_ranks_and_over_restarts() {
     for case in [slope(0.3), wedge()] {
-        let exact = "\n[solver]\nlinear = \"mumps\"\nreproducible = true\n";
+        let exact = "\n[solver]\nlinear = \"direct\"\nreproducible = true\n";
         let scratch = Scratch::with_case(&(case + exact));
         let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
         for ranks in 1..=4 {

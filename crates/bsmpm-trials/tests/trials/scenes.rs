@@ -255,8 +255,9 @@ fn a_weaker_slope_moves_more() {
         scratch.mpirun(2, &[&arguments[..], &paper[..]].concat()).expect(0);
         *history(&scratch.path("slope.out")).get("E_delta_over_gamma_H2").unwrap().last().unwrap()
     });
-    // method.md 7: .3874 and .589 with another quasi-Newton method.
-    assert!((moved[0] - 0.387).abs() < 0.002 && (moved[1] - 0.585).abs() < 0.01, "{moved:?}");
+    // method.md 7: .3874 and .589 with another quasi-Newton method, and without extended splines. With them .571, as
+    // the surface's cells are a little stiffer.
+    assert!((moved[0] - 0.387).abs() < 0.002 && (moved[1] - 0.571).abs() < 0.01, "{moved:?}");
 }
 
 #[test]

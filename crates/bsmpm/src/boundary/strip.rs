@@ -11,7 +11,7 @@ mod point;
 pub use grip::StripContact;
 
 use super::coulomb::ContactReport;
-use super::surface::{Attachment, Surface, SurfacePoint};
+use super::surface::{Attachment, Surface, SurfacePoint, on_grid};
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
 use crate::nodal::Nodal;
@@ -20,6 +20,7 @@ use crate::schedule::between;
 use crate::tensor::Vector;
 use grip::ContactState;
 use point::{LENGTHS, StripPoint, StripSums, contact_report};
+use std::collections::BTreeSet;
 
 /// A displacement as a function of time, linear between its rows: a cut step follows the same path.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +77,19 @@ impl<const D: usize> Strip<D> {
         }
         (force, moment)
     }
+}
+
+/// Nodes of the window whose functions reach a point of a strip at time `t`.
+pub fn nodes_at<const D: usize>(strips: &[Strip<D>], grid: &Grid<D>, t: f64) -> BTreeSet<usize> {
+    let mut nodes = BTreeSet::new();
+    for strip in strips.iter().filter(|strip| strip.acts()) {
+        let place = strip.path.at(t);
+        let cells: BTreeSet<[usize; D]> =
+            strip.points.iter().filter_map(|point| grid.locate(&on_grid(grid, &(point.x + place)))).collect();
+        let functions = cells.into_iter().flat_map(|cell| grid.functions_of(cell));
+        nodes.extend(functions.filter_map(|function| grid.node_index(&function)));
+    }
+    nodes
 }
 
 /// What a strip did in a step.

@@ -346,7 +346,7 @@ impl Attachment {
 }
 
 /// The place itself, or the place on the face that it has left by rounding.
-fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
+pub(super) fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
     Vector::from_fn(|axis, _| {
         let knots = &grid.axes()[axis];
         let inside = x[axis].clamp(0.0, knots.length());

@@ -2,9 +2,9 @@
 //! [`grid::extension`](crate::grid::extension) for the weights e_ij.
 //!
 //! A cell is full if its points fill at least 0.8 of it. A function is outer if it is active and none of its cells is
-//! full. Functions that touch points in contact with a rigid body are not tied: the body holds them, and what it
-//! presses on cannot follow a linear field. Cubic splines are left alone: next to a full cell they stay soft, so that
-//! ties neither stop the creep of their edge nor let a step converge as fast.
+//! full. Functions at points of a rigid strip, or at material points in contact with a rigid body, are not tied: the
+//! strip or body holds them, and what it presses on cannot follow a linear field. Cubic splines are left alone: next to
+//! a full cell they stay soft, so that ties neither stop the creep of their edge nor let a step converge as fast.
 //!
 //! With u_I the inner coefficients, everything else of the step keeps its complete nodal arrays:
 //!
@@ -69,7 +69,8 @@ pub struct Extension<const D: usize> {
 
 impl<const D: usize> Extension<D> {
     /// Ties the outer functions among the nodes that `may_be_tied`; their components leave `free`. `None` where no rank
-    /// has any. Two exchanges with the neighbours, two reductions, and two gatherings where ranks share outer functions.
+    /// has any. Two exchanges with the neighbours, two reductions, and two gatherings where ranks share outer
+    /// functions.
     pub fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
@@ -345,15 +346,12 @@ impl<const D: usize> HomeSearch<'_, D> {
         let grid = self.grid;
         let (place, home) = (grid.place_of_number(outer.number), self.cell_of_number(nearest.cell as usize));
         let along: [Vec<f64>; D] = std::array::from_fn(|axis| weights(&grid.axes()[axis], place[axis], home[axis]));
-        let width = grid.order() + 1;
         let mut inner = Vec::new();
-        for k in 0..grid.cell_nodes() {
-            let digit: [usize; D] = std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);
-            let weight: f64 = (0..D).map(|axis| along[axis][digit[axis]]).product();
+        for function in grid.functions_of(home) {
+            let weight: f64 = (0..D).map(|axis| along[axis][function[axis] - home[axis]]).product();
             if weight != 0.0 {
-                let node = std::array::from_fn(|axis| home[axis] + digit[axis]);
-                let number = (0..D).fold(0, |number, axis| number * grid.axes()[axis].functions() + node[axis]);
-                inner.push(InnerFunction { number, node: grid.node_index(&node), weight });
+                let number = (0..D).fold(0, |number, axis| number * grid.axes()[axis].functions() + function[axis]);
+                inner.push(InnerFunction { number, node: grid.node_index(&function), weight });
             }
         }
         Tie { number: outer.number, node: grid.node_index(&place), tied: outer.tied, is_published, home, inner }

@@ -5,6 +5,7 @@ use crate::boundary::absorbing::Dashpots;
 use crate::boundary::contact::Contacts;
 use crate::boundary::load::{self, follower::FollowerLoads};
 use crate::boundary::rigid::{RigidContacts, Surroundings};
+use crate::boundary::strip;
 use crate::error::StepError;
 use crate::grid::{Grid, Shape, transfer};
 use crate::kinematics::Kinematics;
@@ -137,6 +138,8 @@ impl<const D: usize> Nodes<D> {
         };
         let mut may_be_tied = active.clone();
         may_be_tied.iter_mut().zip(rigid.touched_nodes(nodes, halo)).for_each(|(may, touched)| *may &= !touched);
+        let at_strips = strip::nodes_at(&model.boundary.strips, &model.grid, t);
+        at_strips.into_iter().for_each(|node| may_be_tied[node] = false);
         let extension = Extension::of::<K>(model, shape, points, &may_be_tied, &mut free, halo);
         let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
         let contacts = match model.boundary.has_contact() {
