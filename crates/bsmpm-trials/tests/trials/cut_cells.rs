@@ -99,6 +99,7 @@ top = "roller"
 [solver]
 tolerance = 1e-14
 force_tolerance = 1e-10
+background = 0
 [stabilisation]
 method = "METHOD"
 "#;
@@ -119,7 +120,8 @@ fn a_cut_bar_under_uniform_pressure_has_uniform_stress() {
             largest = stress.chunks_exact(6).map(error).fold(largest, f64::max);
         }
         println!("{method}: largest error {largest:e}");
-        assert!(largest < 1e-4, "{method}: {largest:e}");
+        // 5e-12 were found; the background alone, which is off here, makes 3e-4.
+        assert!(largest < 1e-10, "{method}: {largest:e}");
     }
 }
 
@@ -136,7 +138,8 @@ fn wedge() -> String {
 #[test]
 fn ties_are_the_same_on_any_number_of_ranks_and_over_restarts() {
     for case in [slope(0.3), wedge()] {
-        let exact = "\n[solver]\nlinear = \"direct\"\nreproducible = true\n";
+        let exact =
+            "\n[solver]\nlinear = { ksp = \"preonly\", pc = \"cholesky\", factor = \"mumps\" }\nreproducible = true\n";
         let scratch = Scratch::with_case(&(case + exact));
         let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
         for ranks in 1..=4 {
