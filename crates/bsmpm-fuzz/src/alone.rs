@@ -1,6 +1,7 @@
 //! A scene on one rank without MPI and PETSc.
 
 use crate::solver::Skyline;
+use bsmpm::background::Resisted;
 use bsmpm::error::{SolveError, StepError};
 use bsmpm::initial;
 use bsmpm::kinematics::PlaneStrain;
@@ -56,7 +57,15 @@ impl SerialRun {
     /// One attempt at one step from `t` on.
     pub fn step(&mut self, t: f64, dt: f64) -> Result<StepReport, StepError> {
         let mut counts = Counts::default();
-        step(&self.model, &mut self.points, &mut self.guess, (t, dt), (&self.halo, &mut self.solver), &mut counts)
+        step(
+            &self.model,
+            &mut self.points,
+            &mut self.guess,
+            (t, dt),
+            Resisted::Displacement,
+            (&self.halo, &mut self.solver),
+            &mut counts,
+        )
     }
 }
 

@@ -56,6 +56,9 @@ const ADVANCE: f64 = 0.5;
 const BESIDE: f64 = 0.1;
 /// Part of the internal forces' work that a background usually takes.
 const BACKGROUND: f64 = 0.02;
+/// Part of the load on a node that the background usually carries: 4e-3 at most on tied functions, .75 to 4 on those
+/// that creep.
+const LOAD_SHARE: f64 = 0.1;
 
 /// What the state at the end tells.
 #[derive(Clone, Debug, PartialEq)]
@@ -195,6 +198,10 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
         let meaning = "work done on the soft background, over that of all internal forces, of all steps";
         ("background-work", Indicator::new(share(soft, all), "-", meaning, [0.0, BACKGROUND]))
     });
+    let load_share = summary.background_load_shares.map(|shares| {
+        let meaning = "largest force of the soft background on a node over the load on that node, mean over the steps";
+        ("background-load-share", Indicator::new(share(shares, summary.steps as f64), "-", meaning, [0.0, LOAD_SHARE]))
+    });
     let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic).map(|advance| {
         let meaning = "the farthest that a point moved in a step, in cells";
@@ -205,7 +212,7 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
                        points, mean over the steps";
         ("wall-velocity", Indicator::new(share(excess, all), "-", meaning, [-BESIDE, BESIDE]))
     });
-    [pull, setback, background, advance, beside].into_iter().flatten()
+    [pull, setback, background, load_share, advance, beside].into_iter().flatten()
 }
 
 /// How far so many passes of smoothing have reached.

@@ -250,6 +250,9 @@ impl Ledger {
             summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft * self.whole);
             summary.internal_work = Some(summary.internal_work.unwrap_or(0.0) + all.abs() * self.whole);
         }
+        if let Some(share) = report.background_share {
+            summary.background_load_shares = Some(summary.background_load_shares.unwrap_or(0.0) + share);
+        }
         if let Some((excess, turnover)) = report.beside_fixed.zip(report.turnover.as_ref()) {
             summary.beside_fixed = Some(summary.beside_fixed.unwrap_or(0.0) + excess * self.whole);
             summary.kinetic = Some(summary.kinetic.unwrap_or(0.0) + turnover.stored.kinetic * self.whole);

@@ -192,6 +192,15 @@ impl Body {
 }
 
 impl Case {
+    /// Whether a footing, a prescribed segment or face, or a rigid body moves along a path.
+    pub fn has_prescribed_motion(&self) -> bool {
+        let strips = self.footing.iter().map(|footing| &footing.path);
+        let strips = strips.chain(self.prescribed.iter().map(|prescribed| &prescribed.path));
+        let mut paths = strips.chain(self.rigid.iter().map(|rigid| &rigid.path));
+        let turns = self.rigid.iter().any(|rigid| rigid.rotation.iter().any(|(_, angle)| *angle != 0.0));
+        turns || paths.any(MotionPath::moves)
+    }
+
     /// Weight of all bodies that are there at the start vertically above `at` (m, in the case's coordinates) under the
     /// full gravity, Pa: `Σ ρ |g| l`, g its vertical component, l the length of the vertical ray inside a body. What
     /// lies beside each other is counted once: a body's left side belongs to it, its right side does not. With water

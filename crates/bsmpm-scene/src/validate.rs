@@ -144,6 +144,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     side::of_pressures(&mut case, record, report);
     body::warn_of_overlap(&case, report);
     solver::of_case(&mut case, record, report);
+    solver::warn_of_background(&case, report);
     solid::check(&case, record, report);
     rigid::check(&case, record, report);
     stage::check(&mut case, record, report);

@@ -126,6 +126,25 @@ impl<const D: usize> Boundary<D> {
         self.loads.iter().any(|load| load.turns(step)) || self.strips.iter().any(|strip| strip.acts() && moves(strip))
     }
 
+    /// Whether something moves as prescribed in the step from `t` to `t + dt`, and everything that does has the velocity
+    /// that it had in the step of length `last_dt` before.
+    pub fn moves_steadily(&self, t: f64, last_dt: f64, dt: f64) -> bool {
+        let is_driven = |support: &Support<D>| support.velocity.iter().flatten().any(|&velocity| velocity != 0.0);
+        let mut moves = self.supports.iter().any(is_driven);
+        for strip in self.strips.iter().filter(|strip| strip.acts()) {
+            let places = [t - last_dt, t, t + dt].map(|t| strip.path.at(t));
+            let Some(velocity) = steady_velocity(&places, last_dt, dt) else { return false };
+            moves |= velocity.norm() > 0.0;
+        }
+        for body in self.rigid.iter().filter(|body| body.acts) {
+            let prescribed = |t: f64| body.pick(&Vector::zeros(), &body.on_path(t));
+            let places = [t - last_dt, t, t + dt].map(prescribed);
+            let Some(velocity) = steady_velocity(&places, last_dt, dt) else { return false };
+            moves |= velocity.norm() > 0.0;
+        }
+        moves
+    }
+
     /// The state of strips and loads at the start: no traction, every point at its place.
     pub fn surface(&self) -> Surface<D> {
         let at_rest = |strip: &Strip<D>| vec![Vector::zeros(); strip.points.len()];
@@ -248,3 +267,12 @@ impl<const D: usize> Boundary<D> {
         halo.total(&sums).chunks_exact(D).map(<[f64]>::to_vec).collect()
     }
 }
+/// The velocity between the last two of three places, if it is that between the first two but for round-off.
+fn steady_velocity<const N: usize>(places: &[Vector<N>; 3], last_dt: f64, dt: f64) -> Option<Vector<N>> {
+    let before = (places[1] - places[0]) / last_dt;
+    let now = (places[2] - places[1]) / dt;
+    ((now - before).norm() <= SAME_VELOCITY * now.norm().max(before.norm())).then_some(now)
+}
+
+/// Relative difference up to which two velocities are the same.
+const SAME_VELOCITY: f64 = 1e-6;

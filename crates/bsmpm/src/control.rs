@@ -3,8 +3,10 @@
 //! A nominal step is divided into 1024 ticks; attempts are powers of two of them, on the binary subdivision of the
 //! nominal step, so that the step's end is always met and a cut step is a refinement, not another path.
 
+use crate::background::Resisted;
 use crate::energy::{Budget, Stored};
 use crate::error::StepError;
+use crate::grid::extension::ExtendedSplines;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
 use crate::parallel::{Halo, LinearSolver};
@@ -144,14 +146,16 @@ impl Stepper {
             self.at.budget = Some(Budget::open(Stored::of(model, (points, self.at.t), halo)));
         }
         let (mut rejected, mut counts) = (Vec::new(), Counts::default());
+        let mut has_drag = false; // the next attempt has the background's whole drag
         loop {
             let size = TICKS >> self.at.cuts;
             let end =
                 if self.at.tick + size == TICKS { to } else { from + (to - from) * fraction(self.at.tick + size) };
             let dt = end - self.at.t;
             let mut guess = self.scaled_guess(dt);
+            let resisted = if has_drag { Resisted::Displacement } else { self.resisted(model, dt) };
             let model = self.suddenly(model.over(dt));
-            match step(&model, points, &mut guess, (self.at.t, dt), (halo, solver), &mut counts) {
+            match step(&model, points, &mut guess, (self.at.t, dt), resisted, (halo, solver), &mut counts) {
                 Ok(report) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
                     if let (Some(budget), Some(turnover)) = (&mut self.at.budget, &report.turnover) {
@@ -179,6 +183,11 @@ impl Stepper {
                             | StepError::OtherRank
                     );
                     rejected.push(error);
+                    if resisted == Resisted::Change && !hopeless {
+                        has_drag = true;
+                        continue;
+                    }
+                    has_drag = false;
                     if hopeless || self.at.cuts == MOST_CUTS {
                         // Who goes on from here, with another nominal step, starts as this one did.
                         (self.at.cuts, self.at.easy, _) = before;
@@ -195,6 +204,18 @@ impl Stepper {
     fn suddenly<'a, K: Kinematics<D>, const D: usize>(&self, model: Cow<'a, Model<K, D>>) -> Cow<'a, Model<K, D>> {
         let begins = self.at.guess_dt == 0.0 && self.at.t > 0.0 && model.regime == Regime::Dynamic;
         if begins { Cow::Owned(Model { newmark: Newmark::of_the_end(), ..model.into_owned() }) } else { model }
+    }
+
+    /// What the background resists in a step of this length: the change from the last step where motion that is
+    /// prescribed goes on steadily, and functions of nearly empty cells are tied. A load has no steady flow, and there
+    /// all of the displacement is resisted.
+    fn resisted<K, const D: usize>(&self, model: &Model<K, D>, dt: f64) -> Resisted {
+        let is_tied = model.background.is_some() && model.extended_splines == ExtendedSplines::Linear;
+        let last_dt = self.at.guess_dt;
+        match is_tied && last_dt > 0.0 && model.boundary.moves_steadily(self.at.t, last_dt, dt) {
+            true => Resisted::Change,
+            false => Resisted::Displacement,
+        }
     }
 
     /// The last displacement, scaled by the ratio of the steps (step 3b).

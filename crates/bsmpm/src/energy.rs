@@ -253,7 +253,7 @@ impl Draft {
         add_inertia(flows, problem, u);
         if let Some(blocks) = &nodes.background {
             let mut force = Contributions::none(&model.grid, D, Vec::new());
-            blocks.multiply::<D>(shape, u, &mut force);
+            blocks.multiply::<D>(shape, &nodes.resisted(u), &mut force);
             flows.background = force.dot(u);
         }
     }

@@ -22,6 +22,7 @@ pub mod trial;
 
 pub use report::{Counts, StepReport};
 
+use crate::background::Resisted;
 use crate::boundary::strip::StripAttachments;
 use crate::boundary::{Anchors, Surface, load};
 use crate::energy::Draft;
@@ -43,17 +44,21 @@ use outflow::Outflow;
 use problem::Problem;
 
 /// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
-/// window; replaced by the converged one). On an error nothing has changed but `counts`, which tells the work done.
+/// window; replaced by the converged one), of which the background resists what is `resisted`. On an error nothing has changed but `counts`, which tells the work done.
 pub fn step<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
     guess: &mut Vec<f64>,
     (t, dt): (f64, f64),
+    resisted: Resisted,
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
     counts: &mut Counts,
 ) -> Result<StepReport, StepError> {
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
     let mut nodes = Nodes::after(model, (&shape, points), guess, (t, dt), halo)?; // (2)
+    if resisted == Resisted::Change {
+        nodes.resist_change_from(guess, &model.grid, halo);
+    }
     let free_field = FreeField::after(model, points, (t, dt), halo)?;
     free_field.drive(&mut nodes);
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| t == 0.0)

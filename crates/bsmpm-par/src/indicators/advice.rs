@@ -75,6 +75,10 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
             "points there keep velocities that the grid holds, and are not braked by the wall as they should be: layers of a cell \
              slide too far; smaller cells, [analysis] mass = \"consistent\", or a face with { friction = ... }"
         }
+        "background-load-share" => {
+            "the soft background carries this part of the load on a node, which creeps in every step: use the default \
+             [solver] extension, or increase points_per_cell"
+        }
         "background-work" => {
             "about this part of the forces is carried by the soft background and not by the body: it is stiffer and stronger \
              than its material; a smaller [solver] background"

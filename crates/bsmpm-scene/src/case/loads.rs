@@ -15,6 +15,11 @@ pub struct MotionPath {
 }
 
 impl MotionPath {
+    /// Whether it leads anywhere.
+    pub fn moves(&self) -> bool {
+        self.rows.iter().any(|(_, moved)| *moved != [0.0; 3])
+    }
+
     /// Ends it where it is at the time `until`.
     pub(crate) fn stay(&mut self, until: f64) {
         let rows: Vec<(f64, Vector<3>)> = self.rows.iter().map(|(t, moved)| (*t, (*moved).into())).collect();

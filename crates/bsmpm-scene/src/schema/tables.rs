@@ -187,7 +187,8 @@ static SOLVER: Table = Table {
             "background",
             Quantity(In::Number, UP_TO_1),
             Optional,
-            "soft elastic background in occupied cells, part of the largest young in a cell; quasi-static 1e-4, dynamic 0",
+            "soft elastic background in occupied cells, part of the largest young in a cell; quasi-static 1e-4, dynamic 0; \
+             above 1e-4 ground under dead load is too strong",
         ),
         key("background_kind", Choice(BACKGROUND_KIND), Retired, "the background always resists strain"),
         key("background_cells", Choice(BACKGROUND_CELLS), Retired, "all occupied cells always have the background"),

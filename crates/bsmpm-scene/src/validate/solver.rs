@@ -119,6 +119,22 @@ fn background(solver: &Record, regime: Option<Regime>, report: &mut Report<'_>) 
     Some(background)
 }
 
+/// Coefficient of the background up to which answers under dead load were shown not to depend on it.
+const SOFT: f64 = 1e-4;
+
+/// Warns of a background that makes ground under dead load too strong. Motion that is prescribed meets none of it.
+pub(super) fn warn_of_background(case: &Case, report: &mut Report<'_>) {
+    let is_at_rest = case.analysis.regime == Regime::QuasiStatic;
+    let bears_loads = !case.has_prescribed_motion() || case.strength_reduction.is_some();
+    if is_at_rest && bears_loads && case.solver.background > SOFT {
+        report.warn(format!(
+            "solver.background: {:e} is above {SOFT:e}. Under dead load it makes the ground too strong: with 1e-3, factors of \
+             safety are 2 % too high. Delete solver.background.",
+            case.solver.background
+        ));
+    }
+}
+
 /// Unknowns from which multigrid is taken by itself: a factor of so many has about 40 GB.
 const MANY: u128 = 10_000_000;
 /// Poisson's ratio up to which it is: multigrid's iterations grow from 22 at .3 to 124 at .495 and 900 at .4999.

@@ -207,6 +207,9 @@ fn the_background_is_a_ten_thousandth_at_rest_unless_the_case_wants_another() {
         assert_eq!(coefficient(STATIC, &[&format!("grid.order={order}")]), 1e-4);
     }
     assert_eq!(coefficient(STATIC, &["solver.background=0.5"]), 0.5);
+    let warnings = |set: &[&str]| valid(STATIC, set).warnings.join("\n");
+    assert!(warnings(&["solver.background=1e-3"]).contains("solver.background: 1e-3 is above 1e-4"));
+    assert!(!warnings(&["solver.background=1e-4"]).contains("solver.background"));
     assert_eq!(coefficient(&FULL.replace("background       = 0.0\n", ""), &[]), 0.0);
 }
 

@@ -97,11 +97,11 @@ impl<const D: usize> RigidContacts<D> {
         self.bodies.iter().any(|at| at.body.is_free())
     }
 
-    /// Per node of the window: whether a cell with a point in contact with a body touches it; empty without bodies. One
-    /// exchange with the neighbours where there are bodies.
+    /// Per node of the window: whether a cell with a point in contact with a body touches it. One exchange with the
+    /// neighbours where there are bodies.
     pub fn touched_nodes(&self, nodes: usize, halo: &dyn Halo) -> Vec<bool> {
         if self.is_empty() {
-            return Vec::new();
+            return vec![false; nodes];
         }
         let mut marks = vec![0.0; nodes];
         for point in self.points.iter().filter(|point| point.grip != Grip::Open) {

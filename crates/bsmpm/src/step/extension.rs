@@ -61,21 +61,23 @@ pub struct Extension<const D: usize> {
     ties: Vec<Tie<D>>, // ascending by number
     of_node: Vec<u32>, // of every node of the window: place of its tie, and one; 0: none
     published: usize,
+    loose: Vec<usize>, // nodes of the window whose functions are outer without a home
     /// outer functions that are tied, over all ranks
     pub tied: usize,
-    /// outer functions without a full cell near enough, over all ranks: they stay unknowns
+    /// outer functions without a full cell near enough, or at a rigid body, over all ranks: they stay unknowns
     pub untied: usize,
 }
 
 impl<const D: usize> Extension<D> {
-    /// Ties the outer functions among the nodes that `may_be_tied`; their components leave `free`. `None` where no rank
-    /// has any. Two exchanges with the neighbours, two reductions, and two gatherings where ranks share outer
-    /// functions.
+    /// Ties the outer functions among the `active` nodes but for those `at_bodies`; tied components leave `free`. `None`
+    /// where no rank has outer functions. Two exchanges with the neighbours, two reductions, and two gatherings where
+    /// ranks share outer functions.
     pub fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
         points: &Points<D>,
-        may_be_tied: &[bool],
+        active: &[bool],
+        at_bodies: &[bool],
         free: &mut [bool],
         halo: &dyn Halo,
     ) -> Option<Self> {
@@ -86,13 +88,15 @@ impl<const D: usize> Extension<D> {
         let full = full_cells::<K, D>(grid, shape, points);
         let is_inner = inner_functions(grid, shape, &full, halo);
         let movable = |node: usize| free[Nodal::<D>::of(node)].contains(&true);
-        let is_outer = |node: usize| may_be_tied[node] && !is_inner[node] && movable(node);
-        let outer: Vec<usize> = halo.owned().nodes().filter(|&node| is_outer(node)).collect();
+        let is_outer: Vec<bool> =
+            (0..grid.nodes()).map(|node| active[node] && !is_inner[node] && movable(node)).collect();
+        let mut outer: Vec<usize> = halo.owned().nodes().filter(|&node| is_outer[node]).collect();
         let mut counts = [outer.len() as f64, 0.0];
         halo.reduce(&mut counts[..1]);
         if counts[0] == 0.0 {
             return None;
         }
+        outer.retain(|&node| !at_bodies[node]);
         let search = HomeSearch { grid, full: &full, homes: Homes::of(grid, model.boundary.contact_faces()) };
         let candidate = |node: usize| Candidate {
             number: grid.number_of(node),
@@ -114,6 +118,8 @@ impl<const D: usize> Extension<D> {
         }
         halo.reduce(&mut counts[1..]);
         extension.ties = ties;
+        let is_loose = |&node: &usize| is_outer[node] && !at_bodies[node] && extension.of_node[node] == 0;
+        extension.loose = (0..grid.nodes()).filter(is_loose).collect();
         extension.tied = counts[1] as usize;
         extension.untied = (counts[0] - counts[1]) as usize;
         Some(extension)
@@ -159,6 +165,11 @@ impl<const D: usize> Extension<D> {
                 tie.set(std::array::from_fn(|i| known[&tie.number][i]), u);
             }
         }
+    }
+
+    /// Sets the functions to zero that are outer and have no home, in a nodal array of D numbers a node.
+    pub fn drop_loose(&self, u: &mut [f64]) {
+        self.loose.iter().for_each(|&node| u[Nodal::<D>::of(node)].fill(0.0));
     }
 
     /// f_I + E^T f_J: moves the forces of tied components to the functions of their homes, in several nodal arrays of D

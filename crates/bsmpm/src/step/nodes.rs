@@ -22,6 +22,7 @@ use crate::step::mass::Mass;
 use crate::tensor::Vector;
 use crate::water::carried;
 use crate::water::nodes::Pores;
+use std::borrow::Cow;
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
 const MASSLESS: f64 = 1e-14;
@@ -70,6 +71,8 @@ pub struct Nodes<const D: usize> {
     pub pores: Option<Pores<D>>,
     /// soft background of the step
     pub background: Option<Blocks>,
+    /// m  part of the step's displacement that the background does not resist, D numbers a node; `None`: it resists all
+    pub unresisted: Option<Vec<f64>>,
     /// functions that are tied to others, where there are any
     pub extension: Option<Extension<D>>,
     /// active nodes, over all ranks
@@ -136,11 +139,9 @@ impl<const D: usize> Nodes<D> {
                 RigidContacts::of(&around, young, (t, dt), last, halo)?
             }
         };
-        let mut may_be_tied = active.clone();
-        may_be_tied.iter_mut().zip(rigid.touched_nodes(nodes, halo)).for_each(|(may, touched)| *may &= !touched);
-        let at_strips = strip::nodes_at(&model.boundary.strips, &model.grid, t);
-        at_strips.into_iter().for_each(|node| may_be_tied[node] = false);
-        let extension = Extension::of::<K>(model, shape, points, &may_be_tied, &mut free, halo);
+        let mut at_bodies = rigid.touched_nodes(nodes, halo);
+        strip::nodes_at(&model.boundary.strips, &model.grid, t).into_iter().for_each(|node| at_bodies[node] = true);
+        let extension = Extension::of::<K>(model, shape, points, &active, &at_bodies, &mut free, halo);
         let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
         let contacts = match model.boundary.has_contact() {
             true => Contacts::of((&model.boundary, &model.grid), (shape, points), &free, (t, last), halo),
@@ -187,6 +188,7 @@ impl<const D: usize> Nodes<D> {
             inertia,
             free,
             background,
+            unresisted: None,
             extension,
             active_nodes: 0,
             unknowns: 0,
@@ -226,6 +228,27 @@ impl<const D: usize> Nodes<D> {
     pub fn reduce(&self, forces: &mut [&mut [f64]], halo: &dyn Halo) {
         if let Some(extension) = &self.extension {
             extension.reduce(forces, halo);
+        }
+    }
+
+    /// Lets the background resist only what differs from the displacement `last`, D numbers a node. Functions of nearly
+    /// empty cells follow their full cells in it: next to no stiffness holds what they had of it.
+    pub fn resist_change_from(&mut self, last: &[f64], grid: &Grid<D>, halo: &dyn Halo) {
+        let mut unresisted = last.to_vec();
+        let inactive = self.active.iter().enumerate().filter(|(_, active)| !**active);
+        inactive.for_each(|(node, _)| unresisted[Nodal::<D>::of(node)].fill(0.0));
+        if let Some(extension) = &self.extension {
+            extension.drop_loose(&mut unresisted);
+            extension.extend(grid, &mut unresisted, halo);
+        }
+        self.unresisted = Some(unresisted);
+    }
+
+    /// The part of a nodal displacement that the background resists.
+    pub fn resisted<'a>(&self, u: &'a [f64]) -> Cow<'a, [f64]> {
+        match &self.unresisted {
+            Some(unresisted) => u.iter().zip(unresisted).map(|(u, unresisted)| u - unresisted).collect(),
+            None => Cow::Borrowed(u),
         }
     }
 

@@ -3,7 +3,9 @@
 use crate::boundary::{ContactReport, RigidReport, StripReport};
 use crate::energy::{Flows, Turnover};
 use crate::error::Measures;
+use crate::grid::Contributions;
 use crate::kinematics::Kinematics;
+use crate::nodal::Nodal;
 use crate::solve::found::Found;
 use crate::step::outflow::Outflow;
 use crate::step::problem::Problem;
@@ -66,6 +68,8 @@ pub struct StepReport {
     /// J  work u . B u on the soft background, and f_int . u of all internal forces, the background's among them; if
     /// there is a background
     pub background: Option<[f64; 2]>,
+    /// -  largest force of the background on a node over the load there, if there are both
+    pub background_share: Option<f64>,
     /// J  where the energy went, if the model balances it
     pub energy: Option<Flows>,
     /// J  what bounds the energy, in dynamics and where the model balances it
@@ -85,10 +89,11 @@ pub struct StepReport {
 
 impl StepReport {
     /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and
-    /// one for the background's work.
+    /// with a background two reductions and one exchange with the neighbours.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Self {
         let nodes = problem.nodes;
-        let soft = nodes.background.as_ref().map(|blocks| blocks.work::<D>(problem.shape, &found.u));
+        let resisted = nodes.resisted(&found.u);
+        let soft = nodes.background.as_ref().map(|blocks| blocks.work::<D>(problem.shape, &resisted));
         Self {
             dt: 0.0,
             iterations: found.history.len(),
@@ -109,6 +114,7 @@ impl StepReport {
             rigid: Vec::new(),
             strips: Vec::new(),
             background: soft.map(|work| [problem.halo.total(&[work])[0], found.work]),
+            background_share: background_share(problem, &resisted),
             energy: None,
             turnover: None,
             advance: 0.0,
@@ -118,4 +124,30 @@ impl StepReport {
             smoothed: 0.0,
         }
     }
+}
+
+/// Loads below this part of the largest one are round-off.
+const NO_LOAD: f64 = 1e-9;
+
+/// The largest ratio, over the free nodes of all ranks, of the background's force on a node to the external force there;
+/// `None` without a background or without external forces. A node that only the background holds has about 1.
+fn background_share<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, resisted: &[f64]) -> Option<f64> {
+    let Problem { model, shape, nodes, halo, .. } = *problem;
+    let blocks = nodes.background.as_ref()?;
+    let mut force = Contributions::none(&model.grid, D, Vec::new());
+    blocks.multiply::<D>(shape, resisted, &mut force);
+    let mut force = halo.sum(&force);
+    nodes.reduce(&mut [&mut force], halo);
+    let size = |forces: &[f64], node: usize| {
+        let free = Nodal::<D>::of(node).filter(|&at| nodes.free[at]);
+        free.map(|at| forces[at].powi(2)).sum::<f64>().sqrt()
+    };
+    let load = |node: usize| size(&nodes.f_ext, node);
+    let mut largest = [halo.owned().nodes().map(load).fold(0.0, f64::max)];
+    halo.maximum(&mut largest);
+    let is_loaded = |&node: &usize| load(node) > NO_LOAD * largest[0];
+    let share = |node: usize| size(&force, node) / load(node);
+    let mut share = [halo.owned().nodes().filter(is_loaded).map(share).fold(0.0, f64::max)];
+    halo.maximum(&mut share);
+    (largest[0] > 0.0).then_some(share[0])
 }

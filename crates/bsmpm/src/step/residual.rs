@@ -72,7 +72,7 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
         });
         let InternalForce { mut f_int, inverted, first_inverted } = InternalForce::of(problem, &trial);
         if let Some(background) = &nodes.background {
-            background.multiply::<D>(shape, u, &mut f_int);
+            background.multiply::<D>(shape, &nodes.resisted(u), &mut f_int);
         }
         let balance = Balance { water, ..Balance::of(problem, (u, &|p| trial.dF(p)), halo.sum(&f_int), inverted) };
         Self { trial, balance, first_inverted }

@@ -9,6 +9,7 @@ mod extension;
 mod gap;
 mod indicators;
 mod kinematics;
+mod lagged_background;
 mod lanes;
 mod linearised;
 mod multisecant;

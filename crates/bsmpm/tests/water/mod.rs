@@ -12,6 +12,7 @@ mod terzaghi;
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
+use bsmpm::background::Resisted;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
@@ -123,8 +124,16 @@ pub fn run_from(
         if last > 0.0 {
             guess.iter_mut().for_each(|u| *u *= dt / last);
         }
-        let report = step(&scene.model, &mut scene.points, &mut guess, (t, dt), (&halo, &mut solver), &mut counts)
-            .unwrap_or_else(|error| panic!("from {t} to {next}: {error}"));
+        let report = step(
+            &scene.model,
+            &mut scene.points,
+            &mut guess,
+            (t, dt),
+            Resisted::Displacement,
+            (&halo, &mut solver),
+            &mut counts,
+        )
+        .unwrap_or_else(|error| panic!("from {t} to {next}: {error}"));
         (t, last) = (next, dt);
         scene.points.sort_by_cell(&scene.model.grid);
         watch(t, &scene.points, &report);

@@ -6,6 +6,7 @@ use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
 use crate::support::solver::Skyline;
 use bsmpm::background::Background;
+use bsmpm::background::Resisted;
 use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::error::StepError;
@@ -176,7 +177,15 @@ fn steps(scene: &mut Plane, times: &[f64]) -> Result<(f64, Vec<StepReport>, usiz
     let mut products = 0;
     for next in times {
         let (dt, mut counts) = (next - t, Counts::default());
-        reports.push(step(&scene.model, &mut scene.points, &mut guess, (t, dt), (&halo, &mut solver), &mut counts)?);
+        reports.push(step(
+            &scene.model,
+            &mut scene.points,
+            &mut guess,
+            (t, dt),
+            Resisted::Displacement,
+            (&halo, &mut solver),
+            &mut counts,
+        )?);
         products += counts.products;
         t = *next;
         scene.points.sort_by_cell(&scene.model.grid);

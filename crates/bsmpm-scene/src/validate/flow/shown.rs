@@ -8,6 +8,7 @@ use crate::schema::LawName;
 use crate::validate::flow::crossing::{is_beside, places};
 use crate::validate::side::side;
 use crate::words::{AnalysisType, Side, Word};
+use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
@@ -96,8 +97,9 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let stiffness = |number: usize| case.materials[number].material.elastic().oedometric();
     let softest = soils.map(stiffness).fold(f64::INFINITY, f64::min);
     let load = case.tractions.iter().map(|traction| traction.largest()).fold(0.0, f64::max) / softest;
+    let is_loose = case.solver.extended_splines == ExtendedSplines::Off;
     let soft = case.solver.background < 0.5 * ENOUGH && case.analysis.regime == Regime::QuasiStatic;
-    if soft && load >= LARGE {
+    if is_loose && soft && load >= LARGE {
         report.warn(format!(
             "solver.background: {:e}: a load of {load:.2} of the soil's stiffness takes much of its height, and the points at \
              its surface may drift apart there: settlements off by 10 %, or an early end; shown to be right with {ENOUGH:e}",
