@@ -150,7 +150,7 @@ fn resume<'h>(
     let mut warnings: Vec<String> =
         passed_over.into_iter().map(|bad| format!("{bad}; an older checkpoint is used")).collect();
     warnings.extend(there::other_machine(past, universe.world().size().unsigned_abs(), &found));
-    warnings.extend(there::new_extension(past, case));
+    warnings.extend(there::new_defaults(past, case));
     warnings.extend(changed.iter().map(|change| format!("since the checkpoint, {change}")));
     Ok(RunStart::Resumed(Box::new(Resumed { found, state, changed, warnings, restarts, opened })))
 }

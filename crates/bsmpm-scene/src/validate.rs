@@ -153,6 +153,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     strip::beside_fixed(&case, report);
     section::warn_of_neighbours(&case, record, report);
     lines::place(&mut case, record, report);
+    solver::fit_weights(&mut case, record, report);
     material::band::check(&case, record, report);
     physics::check(&case, record, report);
     lasting::check(&case, record, report);

@@ -4,6 +4,7 @@ use super::Beginning;
 use crate::checkpoint::Refusal;
 use crate::ledger;
 use bsmpm::grid::extension::ExtendedSplines;
+use bsmpm::quadrature::Quadrature;
 use bsmpm_io::checkpoint::FoundCheckpoint;
 use bsmpm_io::directory::Existing;
 use bsmpm_io::exit;
@@ -132,13 +133,15 @@ pub(super) fn futile(restarts: &[ManifestRestart], step: u64) -> Result<(), Refu
     Err(Refusal::new(exit::STALLED, reason))
 }
 
-/// Warns if the run began in a version that had no extended splines, and goes on with them.
-pub(super) fn new_extension(past: &Manifest, case: &Case) -> Option<String> {
+/// Warns if the run began in a version that had neither extended splines nor fitted quadrature by default, and goes on
+/// with one of them.
+pub(super) fn new_defaults(past: &Manifest, case: &Case) -> Option<String> {
     let began_without = !past.sizes.contains_key("most_tied_functions");
-    let goes_on_with = case.solver.extended_splines == ExtendedSplines::Linear;
+    let solver = &case.solver;
+    let goes_on_with = solver.extended_splines == ExtendedSplines::Linear || solver.quadrature == Quadrature::Fitted;
     (began_without && goes_on_with).then(|| {
-        "the run began in a version without extended splines and goes on with them, so displacements at the surface may \
-         change their rate. Set solver.extension = \"off\" to go on as before."
+        "the run began in a version without extended splines and with other quadrature. Displacements at the surface and \
+         stresses at C0 lines may change their rate here. Start the run anew with --force for one consistent run."
             .into()
     })
 }

@@ -174,8 +174,10 @@ static SOLVER: Table = Table {
         key(
             "quadrature",
             Choice(Quadrature::WORDS),
-            Default("\"points\""),
-            "what points weigh in integrals of the stress; fitted (quasi-static, not cubic): splines inside bodies are exact",
+            Optional,
+            "what points weigh in integrals of the stress: their volumes, or (quasi-static, not cubic) volumes with which \
+             splines inside bodies are integrated exactly; fitted where unlike materials meet on a C0 line and no water flows, \
+             else points",
         ),
         key(
             "extension",

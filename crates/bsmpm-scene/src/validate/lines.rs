@@ -41,13 +41,10 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     if case.grid.order == 1 {
         return; // Every grid line is one.
     }
-    let mut found = FoundLine::default();
+    let mut found = FoundLine::at_interfaces(case);
     if case.grid.dims() == 2 {
-        interfaces(case, &mut found);
         ends::segments(case, &mut found);
         ends::corners(case, &mut found);
-    } else {
-        faces::interfaces(case, &mut found);
     }
     ends::plates(case, &mut found);
     for (table, number, message) in std::mem::take(&mut found.narrow) {
@@ -128,6 +125,24 @@ struct FoundLine {
     held: BTreeMap<(usize, usize), f64>, // those of them at the ends of strips: how far these go, m
     doubts: BTreeMap<String, String>,
     narrow: Vec<(&'static str, usize, String)>,
+}
+
+impl FoundLine {
+    /// The grid lines on which unlike materials meet, and doubts about those that meet elsewhere.
+    fn at_interfaces(case: &Case) -> Self {
+        let mut found = Self::default();
+        match case.grid.dims() {
+            2 => interfaces(case, &mut found),
+            _ => faces::interfaces(case, &mut found),
+        }
+        found
+    }
+}
+
+/// Whether strains may jump on a grid line on which unlike materials meet: a C0 line, as of linear splines all are.
+pub(super) fn has_interface(case: &Case) -> bool {
+    let is_c0 = |axis: usize, line: usize| case.grid.order == 1 || has(case, axis, line);
+    FoundLine::at_interfaces(case).lines.keys().any(|(axis, line)| is_c0(*axis, *line))
 }
 
 fn coordinate(case: &Case, axis: usize, line: usize) -> f64 {

@@ -265,9 +265,19 @@ fn words_of_retired_keys_that_were_removed_are_refused_with_what_replaces_them()
 }
 
 #[test]
-fn points_weigh_their_own_volumes_unless_a_quasi_static_case_wants_others() {
+fn points_weigh_fitted_volumes_where_unlike_materials_meet_on_a_c0_line() {
     let fitted = "solver.quadrature=fitted";
+    let layers = include_str!("../../../../cases/validation/two_densities.toml");
+    let layers = |set: &[&str]| valid(layers, set).solver.quadrature;
+    assert_eq!(layers(&[]), Quadrature::Fitted);
+    assert_eq!(layers(&["grid.order=linear"]), Quadrature::Fitted);
+    assert_eq!(layers(&["grid.order=cubic"]), Quadrature::Points);
+    assert_eq!(layers(&["grid.c0_lines=none"]), Quadrature::Points);
+    assert_eq!(layers(&["solver.quadrature=points"]), Quadrature::Points);
     assert_eq!(valid(STATIC, &[]).solver.quadrature, Quadrature::Points);
+    assert_eq!(valid(SEEPING, &[]).solver.quadrature, Quadrature::Points);
+    let strip = "footing={ from = [0.0, 1.0], to = [1.0, 1.0], displacement = [0, -0.01], base = \"smooth\" }";
+    assert_eq!(valid(STATIC, &[strip]).solver.quadrature, Quadrature::Points);
     assert_eq!(valid(STATIC, &[fitted]).solver.quadrature, Quadrature::Fitted);
     assert_eq!(valid(FULL, &["solver.quadrature=points"]).solver.quadrature, Quadrature::Points);
     let errors = set(STATIC, &["grid.order=cubic", fitted]).unwrap_err();
