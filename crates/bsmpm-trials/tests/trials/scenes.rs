@@ -216,7 +216,8 @@ fn the_footing_on_clay_is_the_same_on_1_2_3_and_4_ranks() {
         scratch.job(Some(ranks), &arguments).within(240).run().expect(75);
         *history(&scratch.path(&directory)).get("p_over_c").unwrap().last().unwrap()
     });
-    assert!((pressures[0] - 6.219).abs() < 0.01, "what this coarse grid gave before: {pressures:?}");
+    // Without extended splines, and with a background that resists every displacement, 6.219.
+    assert!((pressures[0] - 6.205).abs() < 0.005, "what this coarse grid gave before: {pressures:?}");
     assert!(pressures.iter().all(|pressure| (pressure / pressures[0] - 1.0).abs() < 1e-6), "{pressures:?}");
 }
 
