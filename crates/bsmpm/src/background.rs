@@ -5,11 +5,12 @@
 //! alike, linear in u. So it never accumulates stress, however far a body moves or turns in many steps: it is a drag,
 //! weaker in smaller steps. It is no part of the paper.
 //!
-//! Where a prescribed motion goes on with its velocity, and extended splines tie the functions of nearly empty cells, it
-//! resists u - w only, w = u_last dt/dt_last ([`Resisted::Change`]). Steady flow then meets no drag, and a limit load
-//! does not depend on the coefficient. This is a step of the proximal point method around the first guess (Rockafellar,
-//! 1976, SIAM J. Control Optim. 14, 877-898). In the first step of such a motion, where its velocity changes, and under
-//! loads it resists all of u: functions without stiffness of their own would else go on with what they had.
+//! Where a prescribed motion goes on with its velocity, and extended splines tie the functions of nearly empty cells,
+//! it resists u - w only, w = u_last dt/dt_last ([`Resisted::Change`]). Steady flow then meets no drag, and a limit
+//! load does not depend on the coefficient. This is a step of the proximal point method around the first guess
+//! (Rockafellar, 1976, SIAM J. Control Optim. 14, 877-898). In the first step of such a motion, where its velocity
+//! changes, and under loads it resists all of u: functions without stiffness of their own would else go on with what
+//! they had.
 //!
 //! In every occupied cell its energy is 1/2 c E int eps : eps dV, where c is the coefficient, E the largest modulus in
 //! the cell and eps the symmetric gradient of the step's displacement: it resists every deformation, and no small

@@ -126,8 +126,8 @@ impl<const D: usize> Boundary<D> {
         self.loads.iter().any(|load| load.turns(step)) || self.strips.iter().any(|strip| strip.acts() && moves(strip))
     }
 
-    /// Whether something moves as prescribed in the step from `t` to `t + dt`, and everything that does has the velocity
-    /// that it had in the step of length `last_dt` before.
+    /// Whether something moves as prescribed in the step from `t` to `t + dt`, and everything that does has the
+    /// velocity that it had in the step of length `last_dt` before.
     pub fn moves_steadily(&self, t: f64, last_dt: f64, dt: f64) -> bool {
         let is_driven = |support: &Support<D>| support.velocity.iter().flatten().any(|&velocity| velocity != 0.0);
         let mut moves = self.supports.iter().any(is_driven);

@@ -150,8 +150,8 @@ pub struct Summary {
     /// without a background.
     #[serde(default)]
     pub internal_work: Option<f64>,
-    /// Largest force of the soft background on a node over the load on it, added over the steps; none without one of the
-    /// two.
+    /// Largest force of the soft background on a node over the load on it, added over the steps; none without one of
+    /// the two.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub background_load_shares: Option<f64>,
     /// J  kinetic energy that points within a cell of a fixed face have beyond that of their motion, added over the

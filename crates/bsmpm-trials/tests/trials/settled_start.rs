@@ -215,8 +215,8 @@ fn ground_that_cannot_stand_has_no_start() {
     assert!(run.stderr.contains("the stress at the start"), "{}", run.stderr);
 }
 
-/// A toe that ends in a point has cells with next to no material there. Without extended splines two points along an axis
-/// cannot hold what these carry, and the run says where.
+/// A toe that ends in a point has cells with next to no material there. Without extended splines two points along an
+/// axis cannot hold what these carry, and the run says where.
 #[test]
 fn a_toe_that_ends_in_a_point_needs_extended_splines_or_more_points() {
     let changes = [

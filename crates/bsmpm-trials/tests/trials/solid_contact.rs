@@ -217,8 +217,8 @@ fn a_cylinder_that_slips_in_part_is_the_axisymmetric_one() {
             )
         });
         println!("mu = {friction}: {force} {round_force}, {power} {round_power}, {sliding} {round_sliding}");
-        // measured: forces up to 1.7e-4 apart, powers 4.2e-3 and, where a part sticks, 2.2e-2; in cells half as long the
-        // power of the axisymmetric one is 5.8e-2 larger
+        // measured: forces up to 1.7e-4 apart, powers 4.2e-3 and, where a part sticks, 2.2e-2; in cells half as long
+        // the power of the axisymmetric one is 5.8e-2 larger
         assert!((force / round_force - 1.0).abs() < 3e-4, "{force} for {round_force}");
         let near = if friction < 0.2 { 6e-3 } else { 3e-2 };
         assert!((power / round_power - 1.0).abs() < near, "{power} for {round_power}");

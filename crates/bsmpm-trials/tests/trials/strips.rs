@@ -208,8 +208,9 @@ name  = "N"
 scale = 1e-4
 "#;
 
-/// Ten times as fast, everything that yields is stronger by mu c, so that the limit load is by mu N c, N that of clay
-/// without rate: nothing else of the flow changes.
+/// Ten times as fast, everything that yields is stronger by mu c, and the flow is the same: the limit load is larger by
+/// what that flow dissipates in clay of the strength mu c. By the upper-bound theorem that is at least mu N c, N of the
+/// clay's own flow without rate, and as the two flows are alike it is little more.
 #[test]
 fn a_strip_carries_more_by_the_rate_in_quasi_static_time() {
     let scratch = Scratch::with_case(RATED);
@@ -224,7 +225,8 @@ fn a_strip_carries_more_by_the_rate_in_quasi_static_time() {
     scratch.write("case.toml", RATED.replace("rate_parameter   = 0.1\nreference_rate   = 1e-12\n", ""));
     let still = end("still", &[]);
     let gained = (fast - slow) / (0.1 * still);
-    assert!((gained - 1.0).abs() < 2e-3, "{slow} {fast} {still}: {gained}");
+    // 1.0056 was found with a background of 1e-3 and of 1e-4.
+    assert!((1.0..1.01).contains(&gained), "{slow} {fast} {still}: {gained}");
 }
 
 /// Time (s) and acceleration of the ground, m/s2, linear between.

@@ -69,9 +69,9 @@ pub struct Extension<const D: usize> {
 }
 
 impl<const D: usize> Extension<D> {
-    /// Ties the outer functions among the `active` nodes but for those `at_bodies`; tied components leave `free`. `None`
-    /// where no rank has outer functions. Two exchanges with the neighbours, two reductions, and two gatherings where
-    /// ranks share outer functions.
+    /// Ties the outer functions among the `active` nodes but for those `at_bodies`; tied components leave `free`.
+    /// `None` where no rank has outer functions. Two exchanges with the neighbours, two reductions, and two gatherings
+    /// where ranks share outer functions.
     pub fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,

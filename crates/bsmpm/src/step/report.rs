@@ -129,8 +129,8 @@ impl StepReport {
 /// Loads below this part of the largest one are round-off.
 const NO_LOAD: f64 = 1e-9;
 
-/// The largest ratio, over the free nodes of all ranks, of the background's force on a node to the external force there;
-/// `None` without a background or without external forces. A node that only the background holds has about 1.
+/// The largest ratio, over the free nodes of all ranks, of the background's force on a node to the external force
+/// there; `None` without a background or without external forces. A node that only the background holds has about 1.
 fn background_share<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, resisted: &[f64]) -> Option<f64> {
     let Problem { model, shape, nodes, halo, .. } = *problem;
     let blocks = nodes.background.as_ref()?;
