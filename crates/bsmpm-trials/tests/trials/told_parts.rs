@@ -7,8 +7,8 @@ use bsmpm_io::frame::FieldValues;
 use bsmpm_io::table::{self, Columns};
 use std::fs;
 
-/// 2 m of soil of 20 kN/m3, in two bodies, on 2 m of rock of 25 kN/m3, between smooth walls 2 m apart. A profile crosses
-/// the interface, where round-off decides which side it takes; points' own volumes have the same on any ranks.
+/// 2 m of soil of 20 kN/m3, in two bodies, on 2 m of rock of 25 kN/m3, between smooth walls 2 m apart. A profile
+/// crosses the interface, where round-off decides which side it takes; points' own volumes have the same on any ranks.
 const COLUMN: &str = r#"
 geometry = "plane-strain"
 [analysis]
