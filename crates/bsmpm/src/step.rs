@@ -45,7 +45,7 @@ use problem::Problem;
 
 /// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
 /// window; replaced by the converged one), of which the background resists what is `resisted`. On an error nothing has
-/// changed but `counts`, which tells the work done.
+/// changed but `counts`, the work that was done.
 pub fn step<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,

@@ -76,8 +76,8 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
              slide too far; smaller cells, [analysis] mass = \"consistent\", or a face with { friction = ... }"
         }
         "background-load-share" => {
-            "the soft background carries this part of the load on a node, which creeps in every step: use the default \
-             [solver] extension, or increase points_per_cell"
+            "material at that node may move without stiffness of its own. Use the default of solver.extension, increase \
+             points_per_cell, or, where a motion is prescribed, increase analysis.steps"
         }
         "background-work" => {
             "about this part of the forces is carried by the soft background and not by the body: it is stiffer and stronger \

@@ -140,8 +140,8 @@ pub(super) fn new_defaults(past: &Manifest, case: &Case) -> Option<String> {
     let solver = &case.solver;
     let goes_on_with = solver.extended_splines == ExtendedSplines::Linear || solver.quadrature == Quadrature::Fitted;
     (began_without && goes_on_with).then(|| {
-        "the run began in a version without extended splines and with other quadrature. Displacements at the surface and \
-         stresses at C0 lines may change their rate here. Start the run anew with --force for one consistent run."
+        "the run began in a version without extended splines and with other default quadrature. Displacements at the surface \
+         and stresses at C0 lines may jump at this restart. For consistent results, start a new run with --force."
             .into()
     })
 }

@@ -188,10 +188,10 @@ impl<const D: usize> Extension<D> {
             known = values_by_number::<D>(&halo.gather(&message), width);
         }
         for tie in &self.ties {
-            let told = known.get(&tie.number);
+            let gathered = known.get(&tie.number);
             for (array, force) in forces.iter_mut().enumerate() {
-                let own: [f64; D] = match (told, tie.node) {
-                    (Some(told), _) => std::array::from_fn(|i| told[array * D + i]),
+                let own: [f64; D] = match (gathered, tie.node) {
+                    (Some(gathered), _) => std::array::from_fn(|i| gathered[array * D + i]),
                     (None, Some(node)) => std::array::from_fn(|i| force[Nodal::<D>::at(node, i)]),
                     (None, None) => continue,
                 };
@@ -232,7 +232,7 @@ impl<const D: usize> Tie<D> {
 
 /// `width` numbers of every tie in a message, by the number of its node.
 fn values_by_number<const D: usize>(message: &[f64], width: usize) -> BTreeMap<usize, Vec<f64>> {
-    message.chunks_exact(width + 1).map(|told| (told[0] as usize, told[1..].to_vec())).collect()
+    message.chunks_exact(width + 1).map(|item| (item[0] as usize, item[1..].to_vec())).collect()
 }
 
 /// Per cell of the window: whether its points fill it.
@@ -266,7 +266,7 @@ fn is_surrounded_by_private_nodes<const D: usize>(grid: &Grid<D>, node: usize, h
         let last = room.end + grid.order() - 1;
         [place[axis].saturating_sub(far).max(room.start), (place[axis] + far).min(last)]
     });
-    // Private nodes are those of a box, so that its corners tell.
+    // Private nodes fill a box, so its corners are enough.
     (0..1 << D).all(|corner: usize| {
         let corner: [usize; D] = std::array::from_fn(|axis| ends[axis][corner >> axis & 1]);
         grid.node_index(&corner).is_some_and(|node| halo.is_private(node))
@@ -316,8 +316,8 @@ impl<const D: usize> HomeSearch<'_, D> {
         self.nearest(outer.number).map(|nearest| self.tied_to(outer, nearest, false))
     }
 
-    /// Ties of functions that other ranks see, too: every rank tells its candidates, and then the best home that it has
-    /// for each of all ranks'.
+    /// Ties of functions that other ranks see, too: every rank sends its candidates to all, and then the best home
+    /// that it has for each of all ranks' candidates.
     fn published_ties(&self, own: &[Candidate<D>], halo: &dyn Halo) -> Vec<Tie<D>> {
         let mut message = Vec::with_capacity(own.len() * 2);
         for candidate in own {
@@ -327,9 +327,9 @@ impl<const D: usize> HomeSearch<'_, D> {
         let all: Vec<Candidate<D>> = halo
             .gather(&message)
             .chunks_exact(2)
-            .map(|told| Candidate {
-                number: told[0] as usize,
-                tied: std::array::from_fn(|axis| told[1] as usize >> axis & 1 == 1),
+            .map(|item| Candidate {
+                number: item[0] as usize,
+                tied: std::array::from_fn(|axis| item[1] as usize >> axis & 1 == 1),
             })
             .collect();
         if all.is_empty() {
@@ -342,9 +342,9 @@ impl<const D: usize> HomeSearch<'_, D> {
             message.extend([candidate.number as f64, beyond_line, apart, off_centre, cell]);
         }
         let mut nearest: BTreeMap<usize, Nearness> = BTreeMap::new();
-        for told in halo.gather(&message).chunks_exact(5) {
-            let other = Nearness { beyond_line: told[1], apart: told[2], off_centre: told[3], cell: told[4] };
-            let known = nearest.entry(told[0] as usize).or_insert(other);
+        for item in halo.gather(&message).chunks_exact(5) {
+            let other = Nearness { beyond_line: item[1], apart: item[2], off_centre: item[3], cell: item[4] };
+            let known = nearest.entry(item[0] as usize).or_insert(other);
             if other < *known {
                 *known = other;
             }

@@ -231,8 +231,8 @@ impl<const D: usize> Nodes<D> {
         }
     }
 
-    /// Lets the background resist only what differs from the displacement `last`, D numbers a node. Functions of nearly
-    /// empty cells follow their full cells in it: next to no stiffness holds what they had of it.
+    /// Lets the background resist only what differs from the displacement `last`, D numbers a node. Outer functions
+    /// take the displacement of their homes in it, since next to no stiffness holds their own.
     pub fn resist_change_from(&mut self, last: &[f64], grid: &Grid<D>, halo: &dyn Halo) {
         let mut unresisted = last.to_vec();
         let inactive = self.active.iter().enumerate().filter(|(_, active)| !**active);

@@ -86,10 +86,10 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
                 }
             }
             kept = own;
-            for told in self.halo.gather(&message).chunks_exact(3 + D * D) {
-                let (pair, column) = ([told[0] as usize, told[1] as usize], told[2] as usize);
+            for item in self.halo.gather(&message).chunks_exact(3 + D * D) {
+                let (pair, column) = ([item[0] as usize, item[1] as usize], item[2] as usize);
                 let sums = kept.entry(pair).or_default().entry(column).or_insert_with(|| vec![0.0; D * D]);
-                sums.iter_mut().zip(&told[3..]).for_each(|(sum, entry)| *sum += entry);
+                sums.iter_mut().zip(&item[3..]).for_each(|(sum, entry)| *sum += entry);
             }
         }
         let total = |sums: ColumnSums| {

@@ -51,7 +51,8 @@ pub struct StepReport {
     pub background_cells: usize,
     /// functions that are tied to those of full cells, over all ranks
     pub tied_functions: usize,
-    /// functions of nearly empty cells alone that no full cell is near enough to tie, over all ranks
+    /// functions of nearly empty cells alone that are not tied, over all ranks: no full cell is near enough, or a
+    /// footing, a prescribed segment or a rigid body holds them
     pub untied_functions: usize,
     /// whether the forces alone decided: the methods led on no further, and forces balanced far below their tolerance
     pub settled: bool,
@@ -65,8 +66,8 @@ pub struct StepReport {
     pub rigid: Vec<RigidReport>,
     /// what every rigid strip did
     pub strips: Vec<StripReport>,
-    /// J  work u . B u on the soft background, and f_int . u of all internal forces, the background's among them; if
-    /// there is a background
+    /// J  work (u - w) . B (u - w) on the soft background, w the displacement that it does not resist, and f_int . u of
+    /// all internal forces, the background's among them; if there is a background
     pub background: Option<[f64; 2]>,
     /// -  largest force of the background on a node over the load there, if there are both
     pub background_share: Option<f64>,
@@ -89,7 +90,8 @@ pub struct StepReport {
 
 impl StepReport {
     /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and
-    /// with a background two reductions and one exchange with the neighbours.
+    /// with a background three reductions, one exchange with the neighbours, and one gathering where ties are
+    /// published.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Self {
         let nodes = problem.nodes;
         let resisted = nodes.resisted(&found.u);
