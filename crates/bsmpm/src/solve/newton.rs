@@ -46,7 +46,8 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     if !residual.balance.is_sound() {
         return Err(inverted(problem, &residual, convergence.iterations()).into());
     }
-    for _ in 0..MOST {
+    // The state that the last direction leads to is judged, too.
+    for iteration in 0..=MOST {
         if convergence.is_balanced(&residual.balance, problem) {
             return Ok(Found::new(u, residual, convergence));
         }
@@ -62,6 +63,9 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         }
         if convergence.reaches(Method::Newton, energy.abs(), (&u, &residual.balance)) {
             return Ok(Found::new(u, residual, convergence));
+        }
+        if iteration == MOST {
+            break;
         }
         let work = stability::tells(problem, &residual.balance).then_some(energy);
         let Some((next, found)) = search(problem, &u, &du, &residual, counts) else { break };
