@@ -17,9 +17,9 @@ pub mod parts;
 
 pub use indicator::Indicator;
 pub use parts::{
-    Communication, EnergyBalance, GridExtent, ManifestCase, ManifestCheck, ManifestChoice, ManifestFailure,
-    ManifestInitial, ManifestOutflow, ManifestOutput, ManifestRestart, ManifestSettling, ManifestStage, SolverNames,
-    Status, Summary, Worst,
+    BackgroundShares, Communication, EnergyBalance, GridExtent, ManifestCase, ManifestCheck, ManifestChoice,
+    ManifestFailure, ManifestInitial, ManifestLimitLoad, ManifestOutflow, ManifestOutput, ManifestRestart,
+    ManifestSettling, ManifestStage, SolverNames, Status, Summary, Worst,
 };
 
 /// The manifest's file.
@@ -99,6 +99,9 @@ pub struct Manifest {
     /// The case's checks, once they were made.
     #[serde(default)]
     pub checks: Vec<ManifestCheck>,
+    /// The limit loads of a case that seeks them, once it has come to its end.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub limit_loads: Vec<ManifestLimitLoad>,
     /// Every file that the run wrote or is about to write, but for this one.
     #[serde(default)]
     pub outputs: Vec<ManifestOutput>,
@@ -147,6 +150,7 @@ impl Manifest {
             stages: Vec::new(),
             outflow: None,
             checks: Vec::new(),
+            limit_loads: Vec::new(),
             outputs: Vec::new(),
             frame_units: BTreeMap::new(),
             frame_names: BTreeMap::new(),
@@ -228,7 +232,10 @@ impl Manifest {
             .indicators
             .iter()
             .flat_map(|(name, indicator)| indicator.numbers().map(|value| (format!("indicators.{name}"), value)));
-        timers.chain(times).chain(grid).chain(checks).chain(failure).chain(cpu).chain(balance).chain(indicators)
+        let limit_loads = self.limit_loads.iter().flat_map(|load| [load.value, load.change]);
+        let limit_loads = limit_loads.map(|value| ("limit_loads".to_owned(), value));
+        let run = timers.chain(times).chain(grid).chain(checks).chain(failure).chain(cpu).chain(balance);
+        run.chain(indicators).chain(limit_loads)
     }
 
     /// Reads the `run.json` of `directory`.

@@ -194,14 +194,7 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
         let meaning = "the farthest that the front went back behind its farthest place";
         ("front-setback", Indicator::new(setback, "m", meaning, [0.0, SETBACK * longest(&case.grid.axes[0])]))
     });
-    let background = summary.background_work.zip(summary.internal_work).map(|(soft, all)| {
-        let meaning = "work done on the soft background, over that of all internal forces, of all steps";
-        ("background-work", Indicator::new(share(soft, all), "-", meaning, [0.0, BACKGROUND]))
-    });
-    let load_share = summary.background_load_shares.map(|shares| {
-        let meaning = "largest force of the soft background on a node over the load on that node, mean over the steps";
-        ("background-load-share", Indicator::new(share(shares, summary.steps as f64), "-", meaning, [0.0, LOAD_SHARE]))
-    });
+    let [background, load_share] = of_background(case, summary);
     let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic).map(|advance| {
         let meaning = "the farthest that a point moved in a step, in cells";
@@ -213,6 +206,29 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
         ("wall-velocity", Indicator::new(share(excess, all), "-", meaning, [-BESIDE, BESIDE]))
     });
     [pull, setback, background, load_share, advance, beside].into_iter().flatten()
+}
+
+/// What the soft background takes of the work and of the load, if there is one: over all steps, or where a limit load is
+/// read at the end of the run in the last one.
+fn of_background(case: &Case, summary: &Summary) -> [Option<(&'static str, Indicator)>; 2] {
+    let work = |value: f64, meaning| ("background-work", Indicator::new(value, "-", meaning, [0.0, BACKGROUND]));
+    let load = |value: f64, meaning| ("background-load-share", Indicator::new(value, "-", meaning, [0.0, LOAD_SHARE]));
+    if case.limit_load.is_some() {
+        let of_work = "work done on the soft background, over that of all internal forces, in the last step";
+        let of_load = "largest force of the soft background on a node over the load on that node, in the last step";
+        let last = summary.last_background;
+        let shares = last.and_then(|shares| shares.load);
+        return [last.map(|shares| work(shares.work, of_work)), shares.map(|share| load(share, of_load))];
+    }
+    let of_work = "work done on the soft background, over that of all internal forces, of all steps";
+    let of_load = "largest force of the soft background on a node over the load on that node, mean over the steps";
+    let part = summary.background_work.zip(summary.internal_work);
+    let share = |(soft, all): (f64, f64)| if soft == 0.0 { 0.0 } else { soft / all };
+    let steps = summary.steps as f64;
+    [
+        part.map(|part| work(share(part), of_work)),
+        summary.background_load_shares.map(|shares| load(shares / steps, of_load)),
+    ]
 }
 
 /// How far so many passes of smoothing have reached.

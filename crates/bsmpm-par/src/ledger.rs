@@ -19,7 +19,7 @@ use bsmpm_io::directory::{HISTORY, OutputDirectory};
 use bsmpm_io::failure::{FAILURE, FailureReport};
 use bsmpm_io::frame::Parts;
 use bsmpm_io::frames::{COLLECTION, Frames};
-use bsmpm_io::manifest::{self, Manifest, Status};
+use bsmpm_io::manifest::{self, BackgroundShares, Manifest, Status};
 use bsmpm_io::residuals::{self, Iterate, RESIDUALS};
 use bsmpm_io::steps::{STEPS, StepRow};
 use bsmpm_io::table::{Cell, CsvTable, TableColumn};
@@ -250,6 +250,10 @@ impl Ledger {
             summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft * self.whole);
             summary.internal_work = Some(summary.internal_work.unwrap_or(0.0) + all.abs() * self.whole);
         }
+        summary.last_background = report.background.map(|[soft, all]| BackgroundShares {
+            work: if all == 0.0 { 0.0 } else { soft / all.abs() },
+            load: report.background_share,
+        });
         if let Some(share) = report.background_share {
             summary.background_load_shares = Some(summary.background_load_shares.unwrap_or(0.0) + share);
         }

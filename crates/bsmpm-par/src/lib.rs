@@ -8,6 +8,7 @@ pub mod gather;
 pub mod indicators;
 pub mod launch;
 pub mod ledger;
+mod limit_load;
 pub mod log;
 pub mod machine;
 pub mod memory;

@@ -3,6 +3,7 @@
 mod element;
 mod flow;
 mod history;
+mod limit_load;
 mod loads;
 mod profile;
 mod rigid;
@@ -13,6 +14,7 @@ pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
 pub use flow::{Drain, DrainSite, Flow, Inflow};
 pub use history::{Check, Column, Counted, Face, History, Made, Quantity};
+pub use limit_load::{LimitLoad, SoughtLoad};
 pub(crate) use loads::keeps_direction;
 pub use loads::{
     Footing, Initial, LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Shares, Site, Traction, Triangle,
@@ -88,6 +90,8 @@ pub struct Case {
     pub output: Output,
     /// What is recorded every step.
     pub histories: Vec<History>,
+    /// The limit load that it seeks, if it seeks one.
+    pub limit_load: Option<LimitLoad>,
     /// Fields along lines, in the order of the file.
     pub profiles: Vec<Profile>,
     /// Bounds that are verified at the end.

@@ -111,7 +111,7 @@ fn values(text: &str) -> Result<BTreeMap<String, DifferenceValue>, Vec<Error>> {
     let source = Source::new("case", text);
     let mut report = Report::new(&source, &[]);
     let mut document = document::parse(&source, &mut report);
-    preset::fill(&mut document, (&source, &[]), &mut report);
+    preset::fill(&mut document, &source, &[], &mut report);
     let record = record::read(&ROOT, &document, &mut report);
     if report.failed() {
         return Err(report.into_errors());

@@ -42,9 +42,10 @@ pub use bsmpm::points::Seed;
 pub use bsmpm::quadrature::Quadrature;
 pub use case::{
     Acting, Analysis, Base, Body, Case, Check, Checkpoint, Column, Counted, Drain, DrainSite, ElementStage,
-    ElementTest, Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, Inflow, Initial, Linear,
-    LoadedLine, Made, MotionPath, NamedMaterial, Nonlinear, Output, Plate, PointLoad, Prescribed, Profile, Push,
-    Quantity, Rigid, RigidShape, Shares, Site, Solver, Stage, Support, Traction, Triangle, Water,
+    ElementTest, Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, Inflow, Initial,
+    LimitLoad, Linear, LoadedLine, Made, MotionPath, NamedMaterial, Nonlinear, Output, Plate, PointLoad, Prescribed,
+    Profile, Push, Quantity, Rigid, RigidShape, Shares, Site, Solver, SoughtLoad, Stage, Support, Traction, Triangle,
+    Water,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

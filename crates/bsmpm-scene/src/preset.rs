@@ -6,6 +6,7 @@
 
 mod axis;
 mod cells;
+mod limit_load;
 mod rigid;
 mod scene;
 
@@ -96,24 +97,48 @@ const FEWEST: f64 = 2.0;
 const ORDER: Order = Order::Quadratic;
 const METHOD: Stabilisation = Stabilisation::ConsistentFBar;
 
-/// Fills in what the document's `accuracy` stands for, if it has one; whether anything was. What cannot be told from
-/// the rest of the case is an error, which says what it would follow from.
+/// A table's keys and values that are filled in follow from a word of the case.
+#[derive(Clone, Copy)]
+struct Choice {
+    key: &'static str,
+    word: &'static str,
+    origin: Origin,
+}
+
+/// Fills in what the document's purpose and `accuracy` stand for, in this order; whether anything was. What cannot be
+/// told from the rest of the case is an error, which says what it would follow from.
 pub(crate) fn fill(
     document: &mut DocumentTable,
-    (source, overrides): (&Source<'_>, &[String]),
+    source: &Source<'_>,
+    overrides: &[String],
     report: &mut Report<'_>,
 ) -> bool {
-    let Some((accuracy, origin)) = chosen(document) else { return false };
+    let accuracy = chosen(document);
+    let is_filled = limit_load::fill(document, accuracy.map(|(accuracy, _)| accuracy), source, overrides, report);
+    let Some((accuracy, origin)) = accuracy else { return is_filled };
+    let choice = Choice { key: ACCURACY, word: accuracy.word(), origin };
+    fill_accuracy(document, accuracy, choice, source, overrides, report) || is_filled
+}
+
+/// Fills in what `accuracy` stands for.
+fn fill_accuracy(
+    document: &mut DocumentTable,
+    accuracy: Accuracy,
+    choice: Choice,
+    source: &Source<'_>,
+    overrides: &[String],
+    report: &mut Report<'_>,
+) -> bool {
     let preset = &Preset::of(accuracy);
     // Its errors are told when the filled document is read.
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     if record.word("geometry") == Some(Geometry::Solid) {
         let message = "not available in a solid yet: give cells, points, steps and tolerances";
-        report.error(origin, ACCURACY, message);
+        report.error(choice.origin, ACCURACY, message);
         return false;
     }
     let scene = PresetScene::of(&record);
-    let mut filling = Completion { document, origin, accuracy, report, filled: false };
+    let mut filling = Completion { document, choice, report, filled: false };
     filling.put("grid", &["order"], &quoted(ORDER), "");
     let cells = scene.cells(preset);
     filling.cells(cells.as_ref(), &scene, preset);
@@ -163,8 +188,7 @@ fn quoted(choice: impl Word) -> String {
 /// A document on its way to be complete.
 struct Completion<'a, 'r> {
     document: &'a mut DocumentTable,
-    origin: Origin,
-    accuracy: Accuracy,
+    choice: Choice,
     report: &'a mut Report<'r>,
     filled: bool,
 }
@@ -172,7 +196,7 @@ struct Completion<'a, 'r> {
 impl Completion<'_, '_> {
     /// Gives the first of these keys of a table the value, unless one of them is given; whether it did.
     fn put(&mut self, table: &str, keys: &[&str], value: &str, why: &str) -> bool {
-        let origin = self.origin;
+        let origin = self.choice.origin;
         if self.document.get(table).is_none() {
             let node = Node { origin, value: Value::Table(DocumentTable::default()) };
             self.document.entries.push(DocumentEntry { key: table.to_owned(), origin, node });
@@ -194,9 +218,9 @@ impl Completion<'_, '_> {
         match self.document.get(table) {
             Some(DocumentEntry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
             _ => {
-                let reason =
-                    format!("\"{}\" cannot choose {table}.{}, which follows from {basis}", self.accuracy, keys[0]);
-                self.report.error(self.origin, ACCURACY, reason);
+                let Choice { key, word, origin } = self.choice;
+                let reason = format!("\"{word}\" cannot choose {table}.{}, which follows from {basis}", keys[0]);
+                self.report.error(origin, key, reason);
             }
         }
     }
@@ -220,7 +244,7 @@ impl Completion<'_, '_> {
     /// Warns of a body whose shorter side (m) has too few cells of an edge (m).
     fn doubt(&mut self, thin: Option<(f64, f64)>) {
         if let Some((side, cell)) = thin {
-            let name = self.accuracy;
+            let name = self.choice.word;
             self.report.warn(format!(
                 "{ACCURACY}: the cells of {cell} m of \"{name}\" are fewer than {FEWEST} across a body of {side} m; give grid.cell"
             ));
@@ -230,7 +254,7 @@ impl Completion<'_, '_> {
     /// Gives every body that has none its points.
     fn points(&mut self, points: u64) {
         const KEY: &str = "points_per_cell";
-        let (origin, value) = (self.origin, points.to_string());
+        let (origin, value) = (self.choice.origin, points.to_string());
         let Some(DocumentEntry { node: Node { value: Value::List(bodies), .. }, .. }) = self.document.get_mut("body")
         else {
             return;
@@ -249,7 +273,8 @@ impl Completion<'_, '_> {
     fn tell(&mut self, key: &str, value: &str, why: &str) {
         self.filled = true;
         let colon = if why.is_empty() { "" } else { ": " };
-        self.report.note(key, value, format!("accuracy = \"{}\"{colon}{why}", self.accuracy));
+        let Choice { key: by, word, .. } = self.choice;
+        self.report.note(key, value, format!("{by} = \"{word}\"{colon}{why}"));
     }
 }
 

@@ -33,7 +33,7 @@ impl Case {
             report.error(Origin::Nowhere, "", "the file is empty: it holds no key of a case");
             return Err(report.into_errors());
         }
-        let filled = preset::fill(&mut document, (&source, overrides), &mut report);
+        let filled = preset::fill(&mut document, &source, overrides, &mut report);
         let record = record::read(&ROOT, &document, &mut report);
         let effective = if overrides.is_empty() && !filled { text.to_owned() } else { document.to_toml() };
         match validate::case(&record, effective, &mut report) {

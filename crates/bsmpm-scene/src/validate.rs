@@ -8,6 +8,7 @@ mod free_field;
 mod grid;
 mod history;
 mod lasting;
+mod limit_load;
 mod lines;
 mod load;
 mod material;
@@ -69,11 +70,6 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let stages = stage::read_all((record, factor), bodies.as_deref(), time, report);
     let contacts = contacts(record, factor, report);
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
-    let reduction = material::Reduction::of(record);
-    let geometry = record.word("geometry");
-    let around =
-        material::CaseFacts { regime, geometry, grid: placed, bodies: made, stages: stages.as_deref(), reduction };
-    let materials = material::read_all(record, around, report);
     let mut gravity = gravity(record, end, report);
     let water = water::read(record, (placed, gravity.as_ref()), end, report);
     let shaking =
@@ -86,10 +82,17 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         end,
         dt: analysis.as_ref().filter(|of| of.kind != AnalysisType::Consolidation).map(|analysis| analysis.dt),
     };
-    let footing = strip::footing(record, around, report);
-    let prescribed = strip::prescribed(record, around, report);
-    let flow = flow::read(record, materials.as_deref(), (around, stages.as_deref()), report);
+    let mut footing = strip::footing(record, around, report);
+    let mut prescribed = strip::prescribed(record, around, report);
     let mut rigid = rigid::read_all(record, (around, regime), factor, report);
+    let moved = limit_load::MovedBodies { footing: footing.as_mut(), prescribed: &mut prescribed, rigid: &mut rigid };
+    let stiffness = limit_load::shrink(record, placed, moved, report);
+    let reduction = material::Reduction::of(record, stiffness);
+    let geometry = record.word("geometry");
+    let facts =
+        material::CaseFacts { regime, geometry, grid: placed, bodies: made, stages: stages.as_deref(), reduction };
+    let materials = material::read_all(record, facts, report);
+    let flow = flow::read(record, materials.as_deref(), (around, stages.as_deref()), report);
     let mut tractions = load::tractions(record, around, report);
     let mut point_loads = load::point_loads(record, around, report);
     let mut initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
@@ -132,6 +135,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
         output: output?,
         histories,
         profiles,
+        limit_load: None,
         checks,
         elements,
         warnings: Vec::new(),
@@ -154,6 +158,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     section::warn_of_neighbours(&case, record, report);
     lines::place(&mut case, record, report);
     solver::fit_weights(&mut case, record, report);
+    limit_load::complete(&mut case, record, stiffness, report);
     material::band::check(&case, record, report);
     physics::check(&case, record, report);
     lasting::check(&case, record, report);

@@ -16,7 +16,7 @@ pub use measurement::Measurement;
 pub use output::{FrameField, ProfileQuantity};
 pub(crate) use retired::{BACKGROUND_CELLS, BACKGROUND_KIND};
 pub use scene::{
-    Accuracy, AnalysisType, Axis, Base, C0Lines, Components, Drainage, Failure, Format, Geometry, Order, Path,
+    Accuracy, AnalysisType, Axis, Base, C0Lines, Components, Drainage, Failure, Format, Geometry, Order, Path, Purpose,
     RigidMotion, Settled, Side, Start, Support,
 };
 pub use solver::{Factor, Ksp, LinearSolver, Nonlinear, Pc};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, element, estimate, fos, plot, slurm, sweep, validate, verify_case};
+use crate::{Error, compare, element, estimate, fos, limit_load, plot, slurm, sweep, validate, verify_case};
 
 /// Starts runs of bsmpm-par, and looks at what they left.
 #[derive(Debug, Parser)]
@@ -27,6 +27,8 @@ pub enum Command {
     Validate(validate::ValidateArguments),
     /// Find the factor of safety of a case by strength reduction
     Fos(fos::FosArguments),
+    /// Find the load under which the ground fails at what is moved, on two or three grids, and extrapolate it
+    LimitLoad(Box<limit_load::LimitLoadArguments>),
     /// Vary settings of a case and weigh the error of its results against their cost
     Sweep(Box<sweep::SweepArguments>),
     /// Run a case on three grids: observed order, extrapolated values, grid convergence index
@@ -69,6 +71,10 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
         Command::Fos(arguments) => {
             let (table, pictures) = fos::run(arguments, say)?;
             print(&table, &pictures);
+        }
+        Command::LimitLoad(arguments) => {
+            let (table, files) = limit_load::run(arguments, say)?;
+            print(&table, &files);
         }
         Command::Sweep(arguments) => {
             let (table, files) = sweep::run(arguments, say)?;
@@ -138,6 +144,6 @@ mod tests {
             }
             seen += 1;
         }
-        assert_eq!(seen, 6);
+        assert_eq!(seen, 7);
     }
 }

@@ -14,6 +14,7 @@ pub mod estimate;
 pub mod fos;
 mod grid_convergence;
 mod launch;
+pub mod limit_load;
 mod line;
 mod picture;
 pub mod plot;

@@ -10,7 +10,7 @@ use crate::launch::{Outcome, RunState, command};
 use crate::report::save;
 use crate::{Error, case, plot};
 
-mod grids;
+pub(crate) mod grids;
 mod report;
 
 use grids::Grids;

@@ -74,6 +74,25 @@ pub struct ManifestChoice {
     pub reason: String,
 }
 
+/// The load under which the ground fails at something that is moved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ManifestLimitLoad {
+    /// What is moved.
+    pub name: String,
+    /// Columns of `history.csv` that it is the sum of, with the weights of each.
+    pub columns: Vec<(String, f64)>,
+    /// Unit of the columns.
+    pub unit: String,
+    /// At the end of the run.
+    pub value: f64,
+    /// (value - value at three quarters of the run) / value: near zero where the limit has been reached.
+    pub change: f64,
+    /// Cells across what is moved; none where it has no width of its own.
+    pub cells: Option<f64>,
+    /// Young's moduli were multiplied, and prescribed displacements divided, by this factor.
+    pub stiffness: f64,
+}
+
 /// How the state at the start was balanced.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestInitial {
@@ -154,6 +173,9 @@ pub struct Summary {
     /// the two.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub background_load_shares: Option<f64>,
+    /// Parts of the work and of the load that the soft background took in the last step; none without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last_background: Option<BackgroundShares>,
     /// J  kinetic energy that points within a cell of a fixed face have beyond that of their motion, added over the
     /// steps; none in statics, and without such a face.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -169,6 +191,15 @@ pub struct Summary {
     pub cpu_seconds: f64,
     /// bytes  the largest resident memory of each rank.
     pub peak_memory: Vec<u64>,
+}
+
+/// What the soft background takes in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BackgroundShares {
+    /// Work done on it over that of all internal forces.
+    pub work: f64,
+    /// Largest force of it on a node over the load on that node; none where no node has a load.
+    pub load: Option<f64>,
 }
 
 /// What the ranks told each other in one way, over the run.

@@ -3,11 +3,14 @@
 use super::Run;
 use crate::indicators::{self, IndicatorState};
 use crate::launch;
+use crate::limit_load;
 use crate::machine;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
+use bsmpm_io::directory::HISTORY;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Communication, SolverNames, Status};
+use bsmpm_io::table;
 use bsmpm_ranks::linear::Tallies;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::traffic::TrafficKind;
@@ -38,6 +41,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         run.tell_vacant();
         if let Some(ledger) = &mut run.ledger {
             failed[0] = f64::from(!ledger.judge());
+            if let Ok(history) = table::read(&ledger.path().join(HISTORY)) {
+                ledger.manifest().limit_loads = limit_load::found(&run.case, &history);
+            }
             for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {
                 let number = |number: Option<f64>| number.map_or("-".to_owned(), |number| format!("{number}"));
                 let (value, least, most) = (number(check.value), number(check.min), number(check.max));
@@ -137,6 +143,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             ledger.path().display()
         );
         self.log.line("end", &text);
+        let limit_loads = limit_load::told(&self.case, &ledger.manifest().limit_loads);
+        limit_loads.iter().for_each(|line| self.log.line("limit-load", line));
         if summary.settled_steps > 0 {
             let text = format!(
                 "{} steps were accepted by their forces alone, balanced ten times better than asked: no method led on to the \

@@ -20,12 +20,23 @@ impl MotionPath {
         self.rows.iter().any(|(_, moved)| *moved != [0.0; 3])
     }
 
+    /// m  Where it is at the time `t`.
+    pub fn at(&self, t: f64) -> [f64; 3] {
+        let rows: Vec<(f64, Vector<3>)> = self.rows.iter().map(|(t, moved)| (*t, (*moved).into())).collect();
+        between(&rows, Vector::zeros(), t).map_or([0.0; 3], Into::into)
+    }
+
+    /// m  the longest way from the start to any of its places
+    pub fn farthest(&self) -> f64 {
+        self.rows.iter().map(|(_, moved)| moved[0].hypot(moved[1]).hypot(moved[2])).fold(0.0, f64::max)
+    }
+
     /// Ends it where it is at the time `until`.
     pub(crate) fn stay(&mut self, until: f64) {
-        let rows: Vec<(f64, Vector<3>)> = self.rows.iter().map(|(t, moved)| (*t, (*moved).into())).collect();
-        if let Some(moved) = between(&rows, Vector::zeros(), until) {
+        if !self.rows.is_empty() {
+            let moved = self.at(until);
             self.rows.retain(|row| row.0 < until);
-            self.rows.push((until, moved.into()));
+            self.rows.push((until, moved));
         }
     }
 }

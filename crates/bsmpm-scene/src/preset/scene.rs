@@ -6,7 +6,7 @@ use crate::record::{ListRow, Record};
 use crate::region;
 use crate::schema::LawName;
 use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
-use crate::words::AnalysisType;
+use crate::words::{AnalysisType, Purpose};
 
 /// What steps follow from.
 pub(super) const STEPS: &str = "`type`, the cells and, in dynamics, `end` and young, poisson and density of the bodies' \
@@ -107,6 +107,21 @@ impl<'a> PresetScene<'a> {
         self.materials().any(stiff).then_some("nearly incompressible material locks without")
     }
 
+    /// Whether a material of the bodies dilates as it yields.
+    pub(super) fn dilates(&self) -> bool {
+        let is_positive = |angle: f64| angle > 0.0;
+        let dilates = |material: &Record| {
+            let profile = material.record("dilation").and_then(|profile| profile.number("value"));
+            material.number("dilation").or(profile).is_some_and(is_positive)
+        };
+        self.materials().any(dilates)
+    }
+
+    /// Whether displacements are divided until they are small against cells.
+    fn seeks_limit_load(&self) -> bool {
+        self.root.record("analysis").and_then(|analysis| analysis.word("purpose")) == Some(Purpose::LimitLoad)
+    }
+
     /// m  corners of the rectangle around all bodies, whatever is cut out of them
     pub(super) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let corners: Option<Vec<[[f64; 2]; 2]>> = self.root.records("body").iter().map(around).collect();
@@ -170,6 +185,9 @@ impl<'a> PresetScene<'a> {
     fn ways(&self, record: &Record) -> Vec<[f64; 2]> {
         let end = self.end();
         let mut moved = vec![[0.0; 2]];
+        if self.seeks_limit_load() {
+            return moved;
+        }
         for pair in rows(record).windows(2).filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0) {
             let part = ((end - pair[0].0) / (pair[1].0 - pair[0].0)).min(1.0);
             moved.push([0, 1].map(|k| pair[0].1[k] + part * (pair[1].1[k] - pair[0].1[k])));

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::words::{
     Accuracy, AnalysisType, BACKGROUND_CELLS, BACKGROUND_KIND, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear,
-    Order, Pc, Word,
+    Order, Pc, Purpose, Word,
 };
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
@@ -86,6 +86,13 @@ static ANALYSIS: Table = Table {
             "numerical damping of second order (WBZ-alpha): what is left at infinite frequency; 1 unless given: none",
         ),
         key("mass", Choice(MassMatrix::WORDS), Optional, "mass matrix of the nodes; lumped unless given"),
+        key(
+            "purpose",
+            Choice(Purpose::WORDS),
+            Optional,
+            "\"limit-load\" (quasi-static, under prescribed motion): chooses points, order, method, steps and tolerances that are \
+             not given, and a raised stiffness, so that the geometry stays as drawn",
+        ),
         key("gamma", Quantity(In::Number, GAMMA), Optional, "Newmark's gamma instead: damping of first order"),
     ],
     exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "gamma"], false)],

@@ -40,13 +40,13 @@ pub(super) struct Reduction {
 }
 
 impl Reduction {
-    /// That of the case; without the table none.
-    pub(super) fn of(root: &Record) -> Self {
+    /// That of the case; without the table none. Young's moduli are multiplied by a further `stiffness`.
+    pub(super) fn of(root: &Record, stiffness: f64) -> Self {
         let table = root.record("strength_reduction");
         let number = |table: Option<&Record>, key| table.and_then(|table| table.number(key)).unwrap_or(1.0);
         let elastic = table.and_then(|table| table.flag("elastic")).unwrap_or(false);
         let factor = number(reduction::at_start(root), "factor");
-        Self { factor, elastic, stiffness: number(table, "stiffness") }
+        Self { factor, elastic, stiffness: stiffness * number(table, "stiffness") }
     }
 }
 
@@ -101,7 +101,8 @@ fn read(
     let young = Profile { value: stiffness * young.value, per_metre: stiffness * young.per_metre, ..young };
     if elastic || stiffness != 1.0 {
         let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
-        report.note(&record.path, value, "strength_reduction.elastic and .stiffness");
+        let reason = if elastic { "strength_reduction.elastic" } else { "strength_reduction or analysis.purpose" };
+        report.note(&record.path, value, reason);
     }
     let material = law.material(record, (young, poisson), (layer.as_ref(), factor))?;
     if let Some(layer) = layer.filter(|_| factor != 1.0) {

@@ -26,7 +26,7 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
         Some(rubs) => rubs?,
         None => (record.word("base")?, None),
     };
-    if base == Base::Smooth && contact.is_none() && normal_part(&path, site) <= NOTHING * size(&path) {
+    if base == Base::Smooth && contact.is_none() && normal_part(&path, site) <= NOTHING * path.farthest() {
         let message = "a smooth base holds its normal component only, and the motion has none";
         record.error(motion(record), message, report);
     }
@@ -184,10 +184,6 @@ fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_
     }
 }
 
-fn size(path: &MotionPath) -> f64 {
-    path.rows.iter().map(|(_, u)| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max)
-}
-
 /// The largest motion normal to a base, m.
 fn normal_part(path: &MotionPath, site: Site) -> f64 {
     let normal = normal_of(site);
@@ -265,5 +261,5 @@ pub(super) fn begins_before<T: PartialEq>(rows: &[(f64, T)], rest: T, t: f64) ->
 
 /// Whether a path moves at all.
 pub(super) fn moves(path: &MotionPath) -> bool {
-    size(path) > 0.0
+    path.farthest() > 0.0
 }

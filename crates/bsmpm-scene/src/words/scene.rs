@@ -120,6 +120,14 @@ choice! {
 }
 
 choice! {
+    /// What a case looks for, which chooses settings that it leaves out.
+    pub enum Purpose {
+        /// The load at which the ground fails under prescribed motion, as in the theory of plasticity.
+        LimitLoad = "limit-load",
+    }
+}
+
+choice! {
     /// What a case leaves out of its discretisation is filled in as coarse or as fine; coarsest first.
     pub enum Accuracy {
         /// To look at.

@@ -72,7 +72,7 @@ impl VerifyArguments {
         let [x, y] = &own.grid.axes[..] else {
             return usage("of a solid --cells gives the three sizes".to_owned());
         };
-        let graded = [x, y].iter().any(|axis| matches!(axis, GridAxis::Graded(_)));
+        let graded = is_graded(own);
         if !(LEAST..=MOST).contains(&self.ratio) {
             return usage(format!("--ratio {}: allowed is {LEAST} to {MOST}", self.ratio));
         }
@@ -115,30 +115,49 @@ impl VerifyArguments {
 
 /// The settings of the case's own grid with each cell divided into so many parts along each axis, and the points of a
 /// cell as they are.
-fn divided(own: &Case, parts: usize) -> Vec<String> {
-    let along = |axis: usize| -> Vec<f64> {
-        let cells = &own.grid.axes[axis];
-        // In the case's coordinates.
-        let breakpoint = |number: usize| match cells {
-            GridAxis::Uniform { lower, .. } => lower + cells.breakpoint(number),
-            GridAxis::Graded(breakpoints) => breakpoints[number],
-        };
-        let at = |number: usize| match number % parts {
-            0 => breakpoint(number / parts),
-            part => {
-                let (cell, along) = (number / parts, part as f64 / parts as f64);
-                breakpoint(cell) * (1.0 - along) + breakpoint(cell + 1) * along
-            }
-        };
-        let copies = |number: usize| {
-            let line = own.grid.lines[axis].iter().find(|line| line.breakpoint * parts == number);
-            line.map_or(1, |line| line.multiplicity)
-        };
-        (0..=cells.cells() * parts).flat_map(|k| std::iter::repeat_n(at(k), copies(k))).collect()
+pub(crate) fn divided(own: &Case, parts: usize) -> Vec<String> {
+    let names = ["x", "y", "z"].into_iter().zip(0..own.grid.axes.len());
+    let knots = names.map(|(name, axis)| format!("{name} = {:?}", divided_knots(own, axis, parts)));
+    let knots = format!("grid.knots={{ {} }}", knots.collect::<Vec<_>>().join(", "));
+    std::iter::once(knots).chain(points(own)).collect()
+}
+
+/// The settings that keep the points of every body's cells.
+fn points(own: &Case) -> impl Iterator<Item = String> {
+    let bodies = own.bodies.iter().enumerate();
+    bodies.map(|(number, body)| format!("body.{number}.points_per_cell={}", body.points_per_cell))
+}
+
+/// m  the breakpoints along an axis, in the case's coordinates, between which each cell is divided into equal parts
+fn divided_knots(own: &Case, axis: usize, parts: usize) -> Vec<f64> {
+    let cells = &own.grid.axes[axis];
+    let breakpoint = |number: usize| match cells {
+        GridAxis::Uniform { lower, .. } => lower + cells.breakpoint(number),
+        GridAxis::Graded(breakpoints) => breakpoints[number],
     };
-    let points = own.bodies.iter().enumerate();
-    let points = points.map(|(body, made)| format!("body.{body}.points_per_cell={}", made.points_per_cell));
-    std::iter::once(format!("grid.knots={{ x = {:?}, y = {:?} }}", along(0), along(1))).chain(points).collect()
+    let at = |number: usize| match number % parts {
+        0 => breakpoint(number / parts),
+        part => {
+            let (cell, along) = (number / parts, part as f64 / parts as f64);
+            breakpoint(cell) * (1.0 - along) + breakpoint(cell + 1) * along
+        }
+    };
+    let copies = |number: usize| {
+        let line = own.grid.lines[axis].iter().find(|line| line.breakpoint * parts == number);
+        line.map_or(1, |line| line.multiplicity)
+    };
+    (0..=cells.cells() * parts).flat_map(|number| std::iter::repeat_n(at(number), copies(number))).collect()
+}
+
+/// The settings of cells of one size, divided into so many parts along each axis.
+pub(crate) fn divided_equally(own: &Case, parts: usize) -> Vec<String> {
+    let edges: Vec<f64> = own.grid.axes.iter().map(|axis| axis.cell(0) / parts as f64).collect();
+    std::iter::once(format!("grid.cell={edges:?}")).chain(points(own)).collect()
+}
+
+/// Whether the cells are of several sizes along an axis.
+pub(crate) fn is_graded(own: &Case) -> bool {
+    own.grid.axes.iter().any(|axis| matches!(axis, GridAxis::Graded(_)))
 }
 
 #[cfg(test)]

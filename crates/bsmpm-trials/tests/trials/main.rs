@@ -17,6 +17,7 @@ mod free_field;
 mod indicators;
 mod laws;
 mod lifts_on_soft_ground;
+mod limit_load;
 mod lock;
 mod memory;
 mod open_faces;

@@ -1,0 +1,74 @@
+//! The limit loads of a case with `[analysis] purpose = "limit-load"`: found in its history at the end of the run, with
+//! what is known of their error.
+
+use bsmpm_io::manifest::ManifestLimitLoad;
+use bsmpm_io::table::Columns;
+use bsmpm_scene::{Case, LimitLoad, SoughtLoad};
+
+/// Part of the run from which on the load should not change any more.
+const LATE: f64 = 0.75;
+/// Relative change since then up to which the limit counts as reached.
+const REACHED: f64 = 0.01;
+/// Cells across the width for which errors are stated; they are inversely proportional to the number of cells.
+const STATED_CELLS: f64 = 16.0;
+/// Least and largest error of verified limit loads with so many cells, of both methods; they are too high
+/// (`cases/results/limit_load.md`).
+const ERRORS_OF_AVERAGES: [f64; 2] = [0.01, 0.05];
+const ERRORS_WITHOUT_AVERAGES: [f64; 2] = [0.02, 0.26];
+
+/// The limit loads that the history of a run shows at its end; empty for a case that seeks none, or without rows.
+pub fn found(case: &Case, history: &Columns) -> Vec<ManifestLimitLoad> {
+    let Some(sought) = &case.limit_load else { return Vec::new() };
+    sought.loads.iter().filter_map(|load| of_load(case, sought, load, history)).collect()
+}
+
+fn of_load(case: &Case, sought: &LimitLoad, load: &SoughtLoad, history: &Columns) -> Option<ManifestLimitLoad> {
+    let times = history.get("time")?;
+    let last = times.len().checked_sub(1)?;
+    let late = times.iter().position(|time| *time >= LATE * times[last])?;
+    let at = |row: usize| -> Option<f64> {
+        let parts = load.columns.iter().map(|(column, weight)| Some(weight * history.get(column)?.get(row)?));
+        parts.sum()
+    };
+    let [before, value] = [at(late)?, at(last)?];
+    let change = if value == 0.0 { 0.0 } else { (value - before) / value };
+    Some(ManifestLimitLoad {
+        name: load.name.clone(),
+        columns: load.columns.clone(),
+        unit: load.unit.clone(),
+        value,
+        change,
+        cells: load.width.map(|width| width / case.grid.shortest()),
+        stiffness: sought.stiffness,
+    })
+}
+
+/// A line on each of them, and one on each that was not reached.
+pub fn told(case: &Case, loads: &[ManifestLimitLoad]) -> Vec<String> {
+    let averages = case.limit_load.as_ref().is_some_and(|sought| sought.averages);
+    loads.iter().flat_map(|load| std::iter::once(line(load, averages)).chain(not_reached(load))).collect()
+}
+
+fn line(load: &ManifestLimitLoad, averages: bool) -> String {
+    let ManifestLimitLoad { name, value, unit, .. } = load;
+    let errors = if averages { ERRORS_OF_AVERAGES } else { ERRORS_WITHOUT_AVERAGES };
+    let expected = load.cells.map_or_else(String::new, |cells| {
+        let [least, most] = errors.map(|error| 100.0 * error * STATED_CELLS / cells);
+        format!(
+            " with {cells:.3} cells across its width. Verified loads were {least:.0} to {most:.0} % too high with so many, which \
+             is the unsafe side. Extrapolate it with `bsmpm limit-load`."
+        )
+    });
+    format!("limit load of {name}: {value:.5e} {unit}{expected}")
+}
+
+fn not_reached(load: &ManifestLimitLoad) -> Option<String> {
+    let ManifestLimitLoad { name, change, .. } = load;
+    let percent = 100.0 * change.abs();
+    let remedy = match () {
+        () if *change > REACHED => "still grows: the value is no limit. Increase the prescribed displacement.",
+        () if *change < -REACHED => "still falls: the value is no limit. Increase analysis.steps.",
+        () => return None,
+    };
+    Some(format!("warning: limit load of {name}: it changed by {percent:.1} % in the last quarter and {remedy}"))
+}

@@ -1,0 +1,60 @@
+//! What `[analysis] purpose = "limit-load"` chooses where the case does not: measured in `cases/results/limit_load.md`.
+
+use super::scene::PresetScene;
+use super::{Choice, Completion, ORDER, Preset, quoted};
+use crate::document::{DocumentTable, Value};
+use crate::error::Origin;
+use crate::record;
+use crate::report::Report;
+use crate::schema::ROOT;
+use crate::source::Source;
+use crate::words::{Accuracy, Purpose, Word};
+use bsmpm::stabilisation::Stabilisation;
+
+const KEY: &str = "analysis.purpose";
+/// Points along each axis of a cell: three lock soil that dilates, where N_gamma is 19 % higher with them.
+const POINTS: u64 = 2;
+/// Equal steps: with 20 of them a strip on sand with a friction angle of 35 degrees ends 17 % above the extrapolated
+/// load, as its steps are cut and each cut adds the drag of the background; with 40 none is cut.
+const STEPS: &str = "40";
+/// Energy and force measure of convergence: with a force measure of 1e-3 loads are 2 to 7 % higher.
+const TOLERANCES: [&str; 2] = ["1e-8", "1e-4"];
+
+/// Fills in what the purpose stands for, if the case has one; whether anything was.
+pub(super) fn fill(
+    document: &mut DocumentTable,
+    accuracy: Option<Accuracy>,
+    source: &Source<'_>,
+    overrides: &[String],
+    report: &mut Report<'_>,
+) -> bool {
+    let Some((purpose, origin)) = chosen(document) else { return false };
+    // Its errors are told when the filled document is read.
+    let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
+    let scene = PresetScene::of(&record);
+    let choice = Choice { key: KEY, word: purpose.word(), origin };
+    let mut filling = Completion { document, choice, report, filled: false };
+    filling.put("grid", &["order"], &quoted(ORDER), "");
+    filling.points(POINTS);
+    filling.put("analysis", &["steps", "dt"], STEPS, "with fewer, steps near failure are cut");
+    let (method, why) = match scene.dilates() {
+        true => (Stabilisation::None, "averages of volumetric strain are wrong in soil that dilates"),
+        false => (Stabilisation::ConsistentFBar, "plastic flow without change of volume locks without"),
+    };
+    filling.put("stabilisation", &["method"], &quoted(method), why);
+    let [energy, force] = match accuracy {
+        Some(Accuracy::Reference) => Preset::of(Accuracy::Reference).tolerances,
+        _ => TOLERANCES,
+    };
+    filling.put("solver", &["tolerance"], energy, "");
+    filling.put("solver", &["force_tolerance"], force, "");
+    filling.filled
+}
+
+/// The word that the case gives, if it is one of them, and its place.
+fn chosen(document: &DocumentTable) -> Option<(Purpose, Origin)> {
+    let Value::Table(analysis) = &document.get("analysis")?.node.value else { return None };
+    let node = &analysis.get("purpose")?.node;
+    let Value::Text(text) = &node.value else { return None };
+    Some((Purpose::of(text)?, node.origin))
+}
