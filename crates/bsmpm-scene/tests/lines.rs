@@ -258,8 +258,7 @@ fn rigid_bodies_have_lines_at_the_corners_that_stay() {
     assert_eq!(lines(&punch(-1.0, down)).0, [vec![10], vec![]]);
     let (found, _, warnings) = lines(&punch(3.2, down));
     assert_eq!(found, [vec![10], vec![]]);
-    let told =
-        |warnings: &[String]| warnings.iter().any(|warning| warning.contains("its corner at x = 3.2 lies inside"));
+    let told = |warnings: &[String]| warnings.iter().any(|warning| warning.contains("a corner at x = 3.2 lies inside"));
     assert!(told(&warnings), "{warnings:?}");
     // A wedge has no edge there, and is widest there all the same; above the ground it parts nothing.
     let wedge = |top: f64| {
@@ -276,4 +275,60 @@ fn rigid_bodies_have_lines_at_the_corners_that_stay() {
         let (found, _, warnings) = lines(&punch(3.2, moved));
         assert!(found == [vec![], vec![]] && !told(&warnings), "{found:?} {warnings:?}");
     }
+}
+
+/// A smooth box of a solid that is pushed down has lines along both axes that it stays at, also where it reaches beyond
+/// a plane of symmetry; inside a cell a warning. The rim of a cylinder is warned of.
+#[test]
+fn rigid_boxes_of_a_solid_have_lines_at_the_edges_that_stay() {
+    let of = |shape: &str, more: &str| {
+        let text = LAYERS
+            .replace("plane-strain", "solid")
+            .replace("lower = [0.0, 0.0]\n    upper = [8.0, 6.0]", "lower = [0, 0, 0]\n    upper = [8, 4, 6]")
+            .replace(
+                "box = { lower = [0.0, 0.0], upper = [8.0, 2.0] }",
+                "box = { lower = [0, 0, 0], upper = [8, 4, 2] }",
+            )
+            .replace(
+                "\"stiff\"\n    box = { lower = [0.0, 2.0], upper = [8.0, 4.0] }",
+                "\"soft\"\n    box = { lower = [0, 0, 2], upper = [8, 4, 4] }",
+            )
+            .replace("[0.0, -9.81]", "[0, 0, -9.81]")
+            .replace("right = \"roller\"", "right = \"roller\"\n    front = \"roller\"\n    back = \"roller\"");
+        let case = case(&format!("{text}[[rigid]]\nname = \"punch\"\n{shape}\n{more}\n"));
+        let breakpoints = |axis: usize| case.grid.lines[axis].iter().map(|line| line.breakpoint).collect::<Vec<_>>();
+        let notes = case.notes.iter().filter(|note| note.key == "grid.c0_lines" && note.value.contains('='));
+        let told = notes.map(|note| note.reason.clone());
+        ([0, 1, 2].map(breakpoints), told.collect::<Vec<_>>(), case.warnings)
+    };
+    let at = |x: f64, y: f64, z: f64| {
+        format!("box = {{ lower = [{x}, {y}, {z}], upper = [{}, {}, {}] }}", x + 2.0, y + 2.0, z + 2.0)
+    };
+    let down = "displacement = [0, 0, -0.1]";
+    let (found, notes, warnings) = of(&at(3.0, 1.0, 4.0), down);
+    assert_eq!(found, [vec![6, 10], vec![2, 6], vec![]]);
+    assert!(notes[0].contains("an edge of rigid `punch`"), "{notes:?}");
+    assert!(!warnings.iter().any(|told| told.contains("punch")), "{warnings:?}");
+    // A quarter of it in the corner of two planes of symmetry, half of it at one; above the ground it parts nothing.
+    assert_eq!(of(&at(-1.0, -1.0, 4.0), down).0, [vec![2], vec![2], vec![]]);
+    assert_eq!(of(&at(3.0, 3.0, 4.0), down).0, [vec![6, 10], vec![6], vec![]]);
+    assert_eq!(of(&at(3.0, 1.0, 4.5), down).0, [vec![], vec![], vec![]]);
+    // A strip has no ends where the ground has none, and what is pushed sideways, too, none along that.
+    let strip = "box = { lower = [3, -9, 4], upper = [5, 9, 6] }";
+    assert_eq!(of(strip, down).0, [vec![6, 10], vec![], vec![]]);
+    assert_eq!(of(&at(3.0, 1.0, 4.0), "displacement = [0.1, 0, -0.1]").0, [vec![], vec![2, 6], vec![]]);
+    // Inside cells.
+    let (found, _, warnings) = of(&at(3.2, 1.0, 4.0), down);
+    assert_eq!(found, [vec![], vec![2, 6], vec![]]);
+    assert!(
+        warnings.iter().any(|told| told.contains("`punch`: an edge at x = 3.2 lies inside a cell")),
+        "{warnings:?}"
+    );
+    let round = |motion: &str| {
+        let shape = "revolve = { about = [4, 2], polygon = [[0, 4], [1, 4], [1, 6], [0, 6]] }";
+        let (found, _, warnings) = of(shape, motion);
+        assert_eq!(found, [vec![], vec![], vec![]]);
+        warnings.iter().any(|told| told.contains("rigid `punch`: its rim is round"))
+    };
+    assert!(round(down) && !round("displacement = [0.1, 0, 0]"));
 }

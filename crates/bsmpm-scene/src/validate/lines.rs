@@ -44,8 +44,8 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     let mut found = FoundLine::at_interfaces(case);
     if case.grid.dims() == 2 {
         ends::segments(case, &mut found);
-        ends::corners(case, &mut found);
     }
+    ends::corners(case, &mut found);
     ends::plates(case, &mut found);
     for (table, number, message) in std::mem::take(&mut found.narrow) {
         let of = record.records(table).get(number);

@@ -1,8 +1,8 @@
-//! C0 lines at the ends of strips and loaded segments, at the edges of plates, and at corners of rigid bodies.
+//! C0 lines at the ends of strips and loaded segments, at the edges of plates, and at corners and edges of rigid bodies.
 
 use super::{BESIDE, BEYOND, FoundLine, NAMES, grid_line};
-use crate::case::{Case, LoadedLine, MotionPath, Rigid, RigidShape, Site};
-use crate::validate::place::is_in;
+use crate::case::{Case, LoadedLine, MotionPath, Rigid, RigidShape, RigidSolid, Site};
+use crate::validate::place::{is_in, over, ring};
 
 /// A strip or a loaded segment.
 struct Segment<'a> {
@@ -23,6 +23,47 @@ impl Segment<'_> {
         let rows = self.path.iter().flat_map(|path| &path.rows);
         rows.map(|(_, moved)| moved[0].hypot(moved[1]).hypot(moved[2])).fold(0.0, f64::max)
     }
+}
+
+/// Where a face normal to an axis ends along another axis: an edge of it, in a plane a corner.
+struct FaceEnd {
+    normal: usize,
+    along: usize,
+    /// m  lower and upper end of the edge, alike in a plane
+    edge: [[f64; 3]; 2],
+    /// m  from the opposite edge to this one
+    outward: f64,
+}
+
+impl FaceEnd {
+    /// The four edges of a face normal to an axis, given by its lower and upper corner.
+    fn of_face(normal: usize, lower: [f64; 3], upper: [f64; 3]) -> impl Iterator<Item = Self> {
+        let along = (0..3).filter(move |axis| *axis != normal);
+        along.flat_map(move |along| {
+            let length = upper[along] - lower[along];
+            [(lower[along], -length), (upper[along], length)].map(|(at, outward)| {
+                let edge = [lower, upper].map(|corner| replaced(corner, along, at));
+                Self { normal, along, edge, outward }
+            })
+        })
+    }
+
+    fn middle(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| 0.5 * (self.edge[0][axis] + self.edge[1][axis]))
+    }
+
+    /// Whether soil lies beyond some place of it.
+    fn has_soil_beyond(&self, case: &Case) -> bool {
+        let shift = self.outward.signum() * BEYOND * case.grid.axes[self.along].shortest();
+        let beyond = |at: [f64; 3]| replaced(at, self.along, at[self.along] + shift);
+        over(self.edge).any(|at| has_material(case, beyond(at), self.normal))
+    }
+}
+
+/// A place with another coordinate along an axis.
+fn replaced(mut place: [f64; 3], axis: usize, coordinate: f64) -> [f64; 3] {
+    place[axis] = coordinate;
+    place
 }
 
 /// A place of a plane.
@@ -68,23 +109,23 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
     for (table, plate, path) in strips.chain(tractions) {
         let name = if table.0 == "footing" { "footing".into() } else { format!("{}.{}", table.0, table.1) };
         if plate.round {
-            let told = format!(
-                "{name}: the rim of a disc lies inside cells: it holds what the splines reach, up to a cell more than its \
-                 radius, and its force is high by as much; compare two cell sizes"
-            );
-            path.into_iter().for_each(|_| drop(found.doubts.insert(name.clone(), told.clone())));
+            path.into_iter().for_each(|_| doubt_rim(&name, found));
             continue;
         }
-        let edge = Segment { name, table, ends: [plate.lower, plate.upper], path };
-        for along in (0..3).filter(|axis| *axis != plate.normal()) {
-            let length = plate.upper[along] - plate.lower[along];
-            for (at, outward) in [(plate.lower[along], -length), (plate.upper[along], length)] {
-                let mut place = plate.middle();
-                place[along] = at;
-                end(case, &edge, (along, plate.normal()), (place, outward), found);
-            }
+        let segment = Segment { name, table, ends: [plate.lower, plate.upper], path };
+        for of in FaceEnd::of_face(plate.normal(), plate.lower, plate.upper) {
+            end(case, &segment, (of.along, of.normal), (of.middle(), of.outward), found);
         }
     }
+}
+
+/// Tells that a round rim follows no grid line.
+fn doubt_rim(name: &str, found: &mut FoundLine) {
+    let told = format!(
+        "{name}: its rim is round and lies inside cells: it pushes what the splines reach, up to a cell more than its radius, \
+         and its force is high by as much; compare two cell sizes"
+    );
+    found.doubts.insert(name.to_owned(), told);
 }
 
 /// Ends of strips and loaded segments beyond which the surface goes on, and walls with material on both sides.
@@ -101,26 +142,44 @@ pub(super) fn segments(case: &Case, found: &mut FoundLine) {
     }
 }
 
-/// Corners at which edges of rigid bodies along an axis end that soil lies at, and the widest ones of what pushes soil,
-/// beyond which it goes on: of bodies that stay at the grid lines there.
+/// Corners and edges at which faces of rigid bodies along the axes end that soil lies at and goes on beyond, of bodies
+/// that stay at the grid lines there.
 pub(super) fn corners(case: &Case, found: &mut FoundLine) {
     for rigid in case.rigid.iter().filter(|rigid| rigid.rotation.is_empty() && !rigid.free[2]) {
-        let RigidShape::Polygon(corners) = &rigid.shape else { continue };
-        let moves = |axis: usize| rigid.free[axis] || rigid.path.rows.iter().any(|(_, moved)| moved[axis] != 0.0);
-        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-            let Some(along) = [0, 1].into_iter().find(|axis| from[1 - axis] == to[1 - axis]) else { continue };
-            let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
-            if !moves(along) && has_material(case, flat(middle), 1 - along) {
-                corner(case, rigid, along, (*from, from[along] - to[along]), found);
-                corner(case, rigid, along, (*to, to[along] - from[along]), found);
-            }
-        }
-        for along in [0, 1].into_iter().filter(|along| !moves(*along) && moves(1 - along)) {
-            for outward in [-1.0, 1.0] {
-                widest(case, rigid, (corners, along, outward), found);
-            }
+        match &rigid.shape {
+            RigidShape::Polygon(corners) => polygon(case, rigid, corners, found),
+            RigidShape::InSpace(RigidSolid::Box { lower, upper }) => cuboid(case, rigid, *lower, *upper, found),
+            RigidShape::InSpace(RigidSolid::Revolved { about, corners }) => rims(case, rigid, *about, corners, found),
+            RigidShape::Circle { .. } | RigidShape::InSpace(RigidSolid::Sphere { .. } | RigidSolid::Terrain(_)) => {}
         }
     }
+}
+
+/// Whether a body that does not turn moves along an axis.
+fn moves(rigid: &Rigid, axis: usize) -> bool {
+    rigid.free[axis] || rigid.path.rows.iter().any(|(_, moved)| moved[axis] != 0.0)
+}
+
+/// Corners at the ends of edges along an axis, and the widest ones of what pushes soil.
+fn polygon(case: &Case, rigid: &Rigid, corners: &[[f64; 2]], found: &mut FoundLine) {
+    for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+        let Some(along) = [0, 1].into_iter().find(|axis| from[1 - axis] == to[1 - axis]) else { continue };
+        let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
+        if !moves(rigid, along) && has_material(case, flat(middle), 1 - along) {
+            corner(case, rigid, &in_plane(along, *from, from[along] - to[along]), found);
+            corner(case, rigid, &in_plane(along, *to, to[along] - from[along]), found);
+        }
+    }
+    for along in [0, 1].into_iter().filter(|along| !moves(rigid, *along) && moves(rigid, 1 - along)) {
+        for outward in [-1.0, 1.0] {
+            widest(case, rigid, (corners, along, outward), found);
+        }
+    }
+}
+
+/// A corner of a plane at which a face along an axis ends.
+fn in_plane(along: usize, at: [f64; 2], outward: f64) -> FaceEnd {
+    FaceEnd { normal: 1 - along, along, edge: [flat(at); 2], outward }
 }
 
 /// The lines through the corners that are outermost along an axis, of edges that lead there and that soil lies at.
@@ -130,31 +189,71 @@ fn widest(case: &Case, rigid: &Rigid, (corners, along, outward): (&[[f64; 2]], u
     for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
         let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
         if (out(from) == most) != (out(to) == most) && has_material(case, flat(middle), 1 - along) {
-            corner(case, rigid, along, (if out(from) == most { *from } else { *to }, outward), found);
+            let at = if out(from) == most { *from } else { *to };
+            corner(case, rigid, &in_plane(along, at, outward), found);
         }
     }
 }
 
-/// The line through a corner; `outward` leads along the edge that ends there.
-fn corner(case: &Case, rigid: &Rigid, along: usize, (at, outward): ([f64; 2], f64), found: &mut FoundLine) {
-    let (axis, mut beyond) = (&case.grid.axes[along], at);
-    beyond[along] += outward.signum() * BEYOND * axis.shortest();
-    if !has_material(case, flat(beyond), 1 - along) {
+/// Edges of the faces of a box that soil lies at. The box may reach beyond the grid, as half of it does at a plane of
+/// symmetry.
+fn cuboid(case: &Case, rigid: &Rigid, lower: [f64; 3], upper: [f64; 3], found: &mut FoundLine) {
+    let first: [f64; 3] = std::array::from_fn(|axis| lower[axis].max(case.grid.lower()[axis]));
+    let last: [f64; 3] = std::array::from_fn(|axis| upper[axis].min(case.grid.upper()[axis]));
+    for normal in 0..3 {
+        if (0..3).any(|axis| axis != normal && first[axis] >= last[axis]) {
+            continue;
+        }
+        for at in [lower[normal], upper[normal]] {
+            let [lower, upper] = [first, last].map(|corner| replaced(corner, normal, at));
+            if !over([lower, upper]).any(|place| has_material(case, place, normal)) {
+                continue;
+            }
+            let stays = |of: &FaceEnd| !moves(rigid, of.along);
+            for of in FaceEnd::of_face(normal, lower, upper).filter(stays) {
+                corner(case, rigid, &of, found);
+            }
+        }
+    }
+}
+
+/// Rims of flat faces that a body of revolution pushes along its axis, where soil lies on both sides of them.
+fn rims(case: &Case, rigid: &Rigid, about: [f64; 2], corners: &[[f64; 2]], found: &mut FoundLine) {
+    let is_flat = |(from, to): &(&[f64; 2], &[f64; 2])| from[1] == to[1];
+    let cell = case.grid.shortest();
+    for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)).filter(is_flat) {
+        let radius = from[0].max(to[0]);
+        let has_soil = |[x, y]: [f64; 2]| has_material(case, [x, y, from[1]], 2);
+        let is_at = |shift: f64| ring(about, radius + shift * BEYOND * cell).any(has_soil);
+        if moves(rigid, 2) && is_at(-1.0) && is_at(1.0) {
+            doubt_rim(&format!("rigid `{}`", rigid.name), found);
+        }
+    }
+}
+
+/// The line through a corner or an edge of a rigid body.
+fn corner(case: &Case, rigid: &Rigid, of: &FaceEnd, found: &mut FoundLine) {
+    if !of.has_soil_beyond(case) {
         return;
     }
-    let name = &rigid.name;
-    match grid_line(case, along, at[along] - axis.lower()) {
+    let (axis, at, name) = (&case.grid.axes[of.along], of.edge[0][of.along], &rigid.name);
+    // Measured eight cells wide on undrained clay, against the exact limit load and against that with the lines.
+    let (what, excess) = match case.grid.dims() {
+        2 => ("a corner", "by 19 % in place of 7"),
+        _ => ("an edge", "by 14 %"),
+    };
+    match grid_line(case, of.along, at - axis.lower()) {
         Some(line) if line == 0 || line == axis.cells() => {}
         Some(line) => {
-            let reason = format!("a corner of rigid `{name}`, where strains are singular");
-            found.lines.entry((along, line)).or_insert(reason);
+            let reason = format!("{what} of rigid `{name}`, where strains are singular");
+            found.lines.entry((of.along, line)).or_insert(reason);
         }
         None => {
             let told = format!(
-                "rigid `{name}`: its corner at {} = {} lies inside a cell: it pushes what the splines reach, up to a cell more \
-                 than its width, and its force is high by as much (on clay by 19 % in place of 7, eight cells wide); put a \
-                 grid line there, by grid.cell or [grid.knots]",
-                NAMES[along], at[along]
+                "rigid `{name}`: {what} at {} = {at} lies inside a cell: it pushes what the splines reach, up to a cell more \
+                 than its width, and its force is high by as much (on clay {excess}, eight cells wide); put a grid line \
+                 there, by grid.cell or [grid.knots]",
+                NAMES[of.along]
             );
             found.doubts.entry(format!("rigid {name}")).or_insert(told);
         }
