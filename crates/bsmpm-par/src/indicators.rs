@@ -59,6 +59,9 @@ const BACKGROUND: f64 = 0.02;
 /// Part of the load on a node that the background usually carries: 4e-3 at most on tied functions, .75 to 4 on those
 /// that creep.
 const LOAD_SHARE: f64 = 0.1;
+/// Usual loss of stiffness in a step. The slope of the README, whose factor of safety is 1.37, has 2 to 3 at a factor
+/// of 1.3, 20 to 50 at 1.35 and 1,000 to 30,000 from 1.4 on.
+pub(crate) const STIFFNESS_LOSS: f64 = 100.0;
 
 /// What the state at the end tells.
 #[derive(Clone, Debug, PartialEq)]
@@ -195,6 +198,12 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
         ("front-setback", Indicator::new(setback, "m", meaning, [0.0, SETBACK * longest(&case.grid.axes[0])]))
     });
     let [background, load_share] = of_background(case, summary);
+    let loss = summary.largest_stiffness_loss.map(|loss| {
+        let meaning = "second-order work of elastic ground over the actual one, largest of the steps";
+        let failed = summary.failed_at.map(|t| format!(". The ground has failed under its load at t = {}", short(t)));
+        let meaning = format!("{meaning}{}", failed.unwrap_or_default());
+        ("stiffness-loss", Indicator::new(loss, "-", &meaning, [0.0, STIFFNESS_LOSS]))
+    });
     let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic).map(|advance| {
         let meaning = "the farthest that a point moved in a step, in cells";
@@ -205,7 +214,12 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
                        points, mean over the steps";
         ("wall-velocity", Indicator::new(share(excess, all), "-", meaning, [-BESIDE, BESIDE]))
     });
-    [pull, setback, background, load_share, advance, beside].into_iter().flatten()
+    [pull, setback, background, load_share, loss, advance, beside].into_iter().flatten()
+}
+
+/// A time without the last digits, in which it differs from a round number.
+fn short(t: f64) -> f64 {
+    format!("{t:.9e}").parse().unwrap_or(t)
 }
 
 /// What the soft background takes of the work and of the load, if there is one: over all steps, or where a limit load is

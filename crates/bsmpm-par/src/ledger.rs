@@ -2,6 +2,7 @@
 
 mod first;
 mod restart;
+mod stiffness;
 
 pub(crate) use first::versions;
 
@@ -48,6 +49,8 @@ pub struct Ledger {
     criteria: Criteria,
     faces: Vec<(usize, f64)>, // of every support, the axis it is normal to, and the sign of its push along it
     least_reaction: f64,      // N, below which a reaction is none
+    judges_stiffness: bool,   // time is none, and no motion is prescribed
+    begins_with_stress: bool, // which the first step may redistribute
     whole: f64,               // that forces and works are multiplied with
 }
 
@@ -114,6 +117,8 @@ impl Ledger {
             criteria: bsmpm_scene::model::criteria(case),
             faces: bsmpm_scene::model::faces(case, 0.0),
             least_reaction: bsmpm_scene::model::least_reaction(case),
+            judges_stiffness: case.analysis.kind.is_timeless() && !case.has_prescribed_motion(),
+            begins_with_stress: case.initial.is_some(),
             whole: case.geometry.whole(),
             directory,
             manifest,
@@ -188,6 +193,7 @@ impl Ledger {
         }
         self.manifest.summary.newton_steps += u64::from(report.newton_iterations > 0);
         self.measures(report);
+        self.stiffness(number, accepted);
         self.reactions(report);
         let slips = report.strips.iter().filter(|strip| strip.motion > 0.0).map(surfaces::relative_slip);
         let largest = slips.chain(self.manifest.summary.largest_slip).reduce(f64::max);

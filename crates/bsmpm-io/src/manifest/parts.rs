@@ -176,6 +176,18 @@ pub struct Summary {
     /// Parts of the work and of the load that the soft background took in the last step; none without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_background: Option<BackgroundShares>,
+    /// m  the farthest that a point moved in a step, added over the steps; none where stiffness is not judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub advances: Option<f64>,
+    /// m  the same since the last stage began.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stage_advances: Option<f64>,
+    /// Second-order work of elastic ground over the actual one, largest of the steps that are judged; none without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_stiffness_loss: Option<f64>,
+    /// s or pseudo-time  end of the first step in which that was beyond its usual range; none while there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed_at: Option<f64>,
     /// J  kinetic energy that points within a cell of a fixed face have beyond that of their motion, added over the
     /// steps; none in statics, and without such a face.
     #[serde(default, skip_serializing_if = "Option::is_none")]

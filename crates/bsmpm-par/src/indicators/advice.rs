@@ -79,6 +79,10 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
             "material at that node may move without stiffness of its own. Use the default of solver.extension, increase \
              points_per_cell, or, where a motion is prescribed, increase analysis.steps"
         }
+        "stiffness-loss" => {
+            "displacements from then on depend on the number of steps and on solver.background, not on equilibrium. Reduce \
+             the load or the strength reduction, or find the factor of safety with `bsmpm fos`"
+        }
         "background-work" => {
             "about this part of the forces is carried by the soft background and not by the body: it is stiffer and stronger \
              than its material; a smaller [solver] background"

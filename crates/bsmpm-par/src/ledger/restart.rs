@@ -52,6 +52,8 @@ impl Ledger {
             criteria: bsmpm_scene::model::criteria(case),
             faces: bsmpm_scene::model::faces(case, resumed.state.progress.t),
             least_reaction: bsmpm_scene::model::least_reaction(case),
+            judges_stiffness: case.analysis.kind.is_timeless() && !case.has_prescribed_motion(),
+            begins_with_stress: case.initial.is_some(),
             whole: case.geometry.whole(),
             directory,
             manifest,

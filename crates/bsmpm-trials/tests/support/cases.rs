@@ -52,6 +52,37 @@ quantity = "mass"
 quantity = "momentum"
 "#;
 
+/// The slope of the README, in a grid whose cells its surface cuts.
+const SLOPE: &str = r#"
+geometry = "plane-strain"
+accuracy = "draft"
+analysis = { type = "quasi-static" }
+gravity = { acceleration = [0.0, -9.81], ramp = 1.0 }
+boundary = { bottom = "fixed", left = "roller", right = "roller" }
+[grid]
+lower = [0.0, 0.0]
+upper = [40.0, 12.0]
+[material.soil]
+model = "mohr-coulomb"
+young = "100 MPa"
+poisson = 0.3
+cohesion = "10 kPa"
+friction = 20.0
+dilation = 0.0
+unit_weight = "20 kN/m3"
+[[body]]
+material = "soil"
+polygon = [[0.0, 0.0], [TOE, 0.0], [CREST, 10.0], [0.0, 10.0]]
+[[history]]
+quantity = "max-displacement"
+"#;
+
+/// The slope of the README with its foot at 32 m and `beyond` more.
+pub fn slope(beyond: f64) -> String {
+    let toe = changed(SLOPE, "TOE", &format!("{:?}", 32.0 + beyond));
+    changed(&toe, "CREST", &format!("{:?}", 12.0 + beyond))
+}
+
 /// The same block on a floor that rubs, .3 mm above it at the start, so that it drops, slides and rocks.
 pub fn rubbed_block() -> String {
     let text = changed(SLIDING_BLOCK, "bottom = \"roller\"", "bottom = { friction = 0.4 }");

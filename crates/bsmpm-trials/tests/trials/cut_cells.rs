@@ -2,39 +2,8 @@
 //! restarts.
 
 use crate::support::Scratch;
-use crate::support::cases::changed;
+use crate::support::cases::{changed, slope};
 use crate::support::results::{agree, at, history, last_frame, manifest};
-
-/// The slope of the README, in a grid whose cells its surface cuts.
-const SLOPE: &str = r#"
-geometry = "plane-strain"
-accuracy = "draft"
-analysis = { type = "quasi-static" }
-gravity = { acceleration = [0.0, -9.81], ramp = 1.0 }
-boundary = { bottom = "fixed", left = "roller", right = "roller" }
-[grid]
-lower = [0.0, 0.0]
-upper = [40.0, 12.0]
-[material.soil]
-model = "mohr-coulomb"
-young = "100 MPa"
-poisson = 0.3
-cohesion = "10 kPa"
-friction = 20.0
-dilation = 0.0
-unit_weight = "20 kN/m3"
-[[body]]
-material = "soil"
-polygon = [[0.0, 0.0], [TOE, 0.0], [CREST, 10.0], [0.0, 10.0]]
-[[history]]
-quantity = "max-displacement"
-"#;
-
-/// With the slope's foot at 32 m and `beyond` more.
-fn slope(beyond: f64) -> String {
-    let toe = changed(SLOPE, "TOE", &format!("{:?}", 32.0 + beyond));
-    changed(&toe, "CREST", &format!("{:?}", 12.0 + beyond))
-}
 
 /// m  largest displacement at the end.
 fn largest_displacement(scratch: &Scratch, set: &[&str]) -> f64 {

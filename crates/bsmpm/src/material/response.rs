@@ -143,6 +143,18 @@ impl Response {
         (self.branch() != Branch::Elastic).then(|| self.trial.assemble(self.moduli.stress(plastic)))
     }
 
+    /// Second-order works per reference volume of the step that led here, J/m3 (Hill, 1958): `Δε : D : Δε` of elastic
+    /// ground and `Δε : D : Δεᵉ` of this one, for the strain Δε of the step. D follows from the law's moduli; `gap` was
+    /// open before the step, and is part of the trial strain.
+    pub fn second_order_works(&self, strain: &Symmetric, gap: f64) -> [f64; 2] {
+        let Moduli { lambda, mu } = self.moduli;
+        let strain = strain.full();
+        let volumetric = strain.trace();
+        let elastic = lambda * volumetric.powi(2) + 2.0 * mu * strain.dot(&strain);
+        let returned = self.returned().map_or(0.0, |returned| returned.full().dot(&strain));
+        [elastic, elastic - returned + self.moduli.bulk() * gap * volumetric]
+    }
+
     /// How what the return took changes with a spatial gradient, Pa: what the bulk modulus after the return differs by
     /// from the law's where elasticity is not linear takes its part of the mean stress.
     pub fn change_of_returned(&self) -> Option<impl Fn(&Tensor) -> Tensor + use<>> {

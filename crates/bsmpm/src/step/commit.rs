@@ -11,8 +11,8 @@ use crate::error::StepError;
 use crate::exact::Exact;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
-use crate::material::{MaterialError, Response, Separation};
-use crate::model::Model;
+use crate::material::{Material, MaterialError, Response, Separation};
+use crate::model::{Model, Regime};
 use crate::parallel::{Halo, agreed};
 use crate::points::{Points, Rows};
 use crate::solve::found::Found;
@@ -91,6 +91,9 @@ pub struct Answer {
     pub dissipation: f64,
     /// J/m3  elastic energy, of the volume at the start
     pub elastic_energy: f64,
+    /// J/m3  second-order works, of the volume at the start: that of elastic ground, and its own; zero where none are
+    /// asked for
+    pub second_order_works: [f64; 2],
     flow: smooth::PlasticFlow,
 }
 
@@ -104,6 +107,7 @@ impl Answer {
             gap: response.gap(),
             dissipation: response.dissipation(),
             elastic_energy: response.elastic_energy(),
+            second_order_works: [0.0; 2],
             flow: smooth::PlasticFlow::of(response, gap),
         }
     }
@@ -119,10 +123,14 @@ pub fn answers<K: Kinematics<D>, const D: usize>(
 ) -> Result<(Vec<Answer>, Option<Rows>), StepError> {
     let mut state = points.state.clone();
     let refused = Mutex::new(None::<(usize, MaterialError)>);
+    let asks = has_second_order_works(model);
     let kept = |p: usize, row: Option<&mut [f64]>| match trial.respond(model, points, p) {
         Ok(response) => {
             row.into_iter().for_each(|row| response.advance(row));
-            Answer::of(&response, points.gap_of(p))
+            let strain = if asks { trial.strain(model, points, p) } else { None };
+            let works = |strain| response.second_order_works(&strain, points.gap_of(p));
+            let second_order_works = strain.map(works).unwrap_or_default();
+            Answer { second_order_works, ..Answer::of(&response, points.gap_of(p)) }
         }
         Err(source) => {
             let mut refused = refused.lock().expect("no thread panicked");
@@ -139,6 +147,27 @@ pub fn answers<K: Kinematics<D>, const D: usize>(
     let failed = |(p, source)| StepError::Material { id: points.id[p], source };
     let answers = refused.into_inner().expect("no thread panicked").map_or(Ok(answers), |point| Err(failed(point)));
     Ok((agreed(halo, answers, StepError::OtherRank)?, state))
+}
+
+/// Whether second-order works measure how far the ground is from failure: in quasi-static analysis of material that
+/// yields, without water that flows, whose pressure takes load from the ground in time.
+fn has_second_order_works<K, const D: usize>(model: &Model<K, D>) -> bool {
+    let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
+    model.regime == Regime::QuasiStatic && !flows && model.materials.iter().any(Material::yields)
+}
+
+/// Second-order works of a step over all points of all ranks, J: `Σ V0 Δε : D : Δε` of elastic ground, and the actual
+/// `Σ V0 Δε : D : Δεᵉ`, which is the work of the change of the loads on the displacement of the step. `None` where
+/// they measure nothing.
+pub fn second_order_works<K, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    answers: &[Answer],
+    halo: &dyn Halo,
+) -> Option<[f64; 2]> {
+    let of = |p: usize| answers[p].second_order_works.map(|dense| points.volume[p] * dense);
+    let total = has_second_order_works(model).then(|| halo.total(&threads::sums(points.len(), of)))?;
+    Some([total[0], total[1]])
 }
 
 /// Saves the converged step, which the constitution has answered so, with the laws' state after it, into the points.

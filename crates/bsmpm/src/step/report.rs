@@ -71,6 +71,9 @@ pub struct StepReport {
     pub background: Option<[f64; 2]>,
     /// -  largest force of the background on a node over the load there, if there are both
     pub background_share: Option<f64>,
+    /// J  second-order works of the step: that of elastic ground with its strain, and the actual one; in quasi-static
+    /// analysis of material that yields, without water that flows
+    pub second_order_works: Option<[f64; 2]>,
     /// J  where the energy went, if the model balances it
     pub energy: Option<Flows>,
     /// J  what bounds the energy, in dynamics and where the model balances it
@@ -117,6 +120,7 @@ impl StepReport {
             strips: Vec::new(),
             background: soft.map(|work| [problem.halo.total(&[work])[0], found.work]),
             background_share: background_share(problem, &resisted),
+            second_order_works: None,
             energy: None,
             turnover: None,
             advance: 0.0,

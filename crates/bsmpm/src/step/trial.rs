@@ -192,10 +192,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     /// What the viscous stress of point `p` takes in the step per reference volume, J/m3, if it has any.
     pub(crate) fn damping_takes(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<f64> {
         let viscous = self.viscous_at(model, points, p)?;
-        let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
-        let strained = K::push_forward(&dF_bar, &Symmetric::IDENTITY);
-        let strain = Response::elastic(&strained, (0.0, 0.0)).ok()?.trial_strain();
-        Some(viscous.tau.full().dot(&strain.full()))
+        Some(viscous.tau.full().dot(&self.strain(model, points, p)?.full()))
     }
 
     /// The viscous stress of point `p` where the constitution's response is not at hand, if it has any.
@@ -222,6 +219,13 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     #[inline]
     pub(crate) fn pore_at(&self, p: usize) -> Option<f64> {
         self.pore.as_ref().map(|pore| pore[p])
+    }
+
+    /// Hencky strain of point `p` in the step: `½ ln dF-bar dF-bar^T`; none of a point that inverted.
+    pub(crate) fn strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Symmetric> {
+        let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
+        let strained = K::push_forward(&dF_bar, &Symmetric::IDENTITY);
+        Some(Response::elastic(&strained, (0.0, 0.0)).ok()?.trial_strain())
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.

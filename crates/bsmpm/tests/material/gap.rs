@@ -66,3 +66,21 @@ fn dilation_is_no_gap() {
         state = (found.b_e(), found.gap());
     }
 }
+
+/// Sand that has come apart works nothing while it opens and closes; once closed, it works as elastic ground does.
+#[test]
+fn an_open_gap_has_no_second_order_work() {
+    let material = mohr_coulomb(1e4, 0.3, 30.0, 0.0, 0.0);
+    let stretch = |by: f64| [by.exp(), by.exp(), by.exp()];
+    let strain = |by: f64| Symmetric([by, by, by, 0.0, 0.0, 0.0]);
+    let open = driven(&material, (Symmetric::IDENTITY, 0.0), stretch(0.01));
+    for by in [0.01, -0.005] {
+        let next = driven(&material, (open.b_e(), open.gap()), stretch(by));
+        let [elastic, actual] = next.second_order_works(&strain(by), open.gap());
+        assert!(elastic > 0.1 && actual.abs() <= 1e-12, "{by}: {actual} of {elastic}");
+    }
+    // From a gap of 0.03 by -0.06: half of the strain closes the gap, half of it strains the sand.
+    let closed = driven(&material, (open.b_e(), open.gap()), stretch(-0.02));
+    let [elastic, actual] = closed.second_order_works(&strain(-0.02), open.gap());
+    assert!((actual / elastic - 0.5).abs() <= 1e-12, "{actual} of {elastic}");
+}

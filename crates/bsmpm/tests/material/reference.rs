@@ -2,6 +2,7 @@
 
 use super::{Branch, Material, difference, hencky, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;
+use bsmpm::tensor::Symmetric;
 
 /// φ, ψ (degrees) and c; principal strain; region; principal stress.
 type Row = ([f64; 3], [f64; 3], Branch, [f64; 3]);
@@ -85,6 +86,23 @@ fn plastic_increment_is_the_deviatoric_strain_lost() {
     // tau = (1, 0, -1) is eps_e = 1.3e-3 (1, 0, -1): 3.7e-3 (1, 0, -1) is lost.
     let exact = (2.0_f64 / 3.0).sqrt() * 2.0_f64.sqrt() * 3.7e-3;
     assert!((found.plastic_increment() - exact).abs() <= 1e-14);
+}
+
+/// Shear beyond c = 1 Pa: the stress grows by c (1, 0, -1) in the first step, whose work on the strain is actual, and not
+/// at all in the second one. Elastic ground works 2 mu |strain|^2, mu = 1000/2.6 Pa.
+#[test]
+fn second_order_work_is_elastic_until_perfect_flow_leaves_none() {
+    let (weak, strong) = (mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1.0), mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1e3));
+    let sheared = |by: f64| Symmetric([by, 0.0, -by, 0.0, 0.0, 0.0]);
+    let elastic = 2000.0 / 2.6 * 2.0 * 0.005_f64.powi(2);
+    let is_near = |found: [f64; 2], exact: [f64; 2]| (0..2).all(|k| (found[k] - exact[k]).abs() <= 1e-12);
+    let first = respond(&strong, &stretched([0.005, 0.0, -0.005]));
+    assert!(is_near(first.second_order_works(&sheared(0.005), 0.0), [elastic; 2]));
+    let first = respond(&weak, &stretched([0.005, 0.0, -0.005]));
+    assert!(is_near(first.second_order_works(&sheared(0.005), 0.0), [elastic, 0.01]));
+    let [x, _, z] = first.principal_eps_e();
+    let second = respond(&weak, &stretched([x + 0.005, 0.0, z - 0.005]));
+    assert!(is_near(second.second_order_works(&sheared(0.005), 0.0), [elastic, 0.0]));
 }
 
 #[test]
