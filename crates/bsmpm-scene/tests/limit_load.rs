@@ -30,6 +30,7 @@ fn it_chooses_points_steps_tolerances_and_the_method_of_the_flow_rule() {
         for accuracy in ["draft", "standard", "reference"] {
             let case = valid(text, &[&format!("accuracy={accuracy}")]);
             assert_eq!((case.stabilisation, case.grid.order, case.bodies[0].points_per_cell), (method, 2, 2));
+            assert_eq!(case.solver.background, 2e-5);
             assert!((case.analysis.dt - 1.0 / 40.0).abs() < 1e-15 && case.solver.force_tolerance <= 1e-4);
         }
         let by_hand = ["stabilisation.method=f-bar", "analysis.steps=10", "body.0.points_per_cell=3"];

@@ -34,12 +34,9 @@ pub(super) fn draw(
 
 fn draw_unit(report: &LimitLoadReport, unit: &str, curves: &[ChartCurve]) -> crate::picture::canvas::Canvas {
     let loads = report.loads.iter().filter(|load| load.unit == *unit);
-    let levels = loads.map(|load| ChartLevel {
-        value: load.load,
-        text: format!("{}, extrapolated: {} +- {}", load.name, number(load.load), number(load.band)),
-    });
+    let levels = loads.map(|load| ChartLevel { value: load.load, text: format!("{}, extrapolated", load.name) });
     let below = format!(
-        "{}, {} points along each axis of a cell, {} steps; displacements of the given stiffness",
+        "stabilisation {}, {} points along each axis of a cell, {} steps; displacements as of the case's own stiffness",
         report.stabilisation, report.points_per_cell[0], report.steps
     );
     let levels: Vec<ChartLevel> = levels.collect();

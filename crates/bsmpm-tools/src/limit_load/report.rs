@@ -111,7 +111,7 @@ impl LimitLoadReport {
         let found: String = self.loads.iter().map(ExtrapolatedLoad::text).collect();
         let unfinished: String = self.grids.iter().filter_map(GridLoad::doubt).collect();
         format!(
-            "{}\n{} points along each axis of a cell; {}; {} steps; Young's moduli x {}\n\n{}\n{found}{unfinished}",
+            "{}\n{} points along each axis of a cell; stabilisation {}; {} steps; Young's moduli x {} on the first grid\n\n{}\n{found}{unfinished}",
             self.title,
             self.points_per_cell[0],
             self.stabilisation,
@@ -215,10 +215,16 @@ impl ExtrapolatedLoad {
         format!(
             "Limit load of {name}{column}: {} +- {} {unit}, extrapolated from the two finest grids{order}.\nOn the finest grid it is \
              {off:.1} % {side}.\n{of_cohesion}",
-            number(*load),
-            number(*band)
+            rounded(*load, 4),
+            rounded(*band, 2)
         )
     }
+}
+
+/// A value with so many significant digits.
+fn rounded(value: f64, digits: usize) -> String {
+    let decimals = digits - 1;
+    number(format!("{value:.decimals$e}").parse().unwrap_or(value))
 }
 
 /// What loads on grids say of an infinitely fine one.
