@@ -5,7 +5,7 @@ use bsmpm_io::manifest::ManifestLimitLoad;
 use bsmpm_io::table::Columns;
 use bsmpm_scene::{Case, LimitLoad, SoughtLoad};
 
-/// Part of the run from which on the load should not change any more.
+/// Part of the way from which on the load should not change any more.
 const LATE: f64 = 0.75;
 /// Relative change since then up to which the limit counts as reached.
 const REACHED: f64 = 0.01;
@@ -19,56 +19,67 @@ const ERRORS_WITHOUT_AVERAGES: [f64; 2] = [0.02, 0.26];
 /// The limit loads that the history of a run shows at its end; empty for a case that seeks none, or without rows.
 pub fn found(case: &Case, history: &Columns) -> Vec<ManifestLimitLoad> {
     let Some(sought) = &case.limit_load else { return Vec::new() };
-    sought.loads.iter().filter_map(|load| of_load(case, sought, load, history)).collect()
+    sought.loads.iter().filter_map(|load| of_load(sought, load, history)).collect()
 }
 
-fn of_load(case: &Case, sought: &LimitLoad, load: &SoughtLoad, history: &Columns) -> Option<ManifestLimitLoad> {
+fn of_load(sought: &LimitLoad, load: &SoughtLoad, history: &Columns) -> Option<ManifestLimitLoad> {
     let times = history.get("time")?;
     let last = times.len().checked_sub(1)?;
-    let late = times.iter().position(|time| *time >= LATE * times[last])?;
+    let way = |row: usize| load.path.at(times[row]).iter().fold(0.0, |length: f64, along| length.hypot(*along));
+    let late = (0..=last).find(|row| way(*row) >= LATE * way(last))?;
     let at = |row: usize| -> Option<f64> {
         let parts = load.columns.iter().map(|(column, weight)| Some(weight * history.get(column)?.get(row)?));
         parts.sum()
     };
     let [before, value] = [at(late)?, at(last)?];
     let change = if value == 0.0 { 0.0 } else { (value - before) / value };
+    let is_reached = value > 0.0 && change.abs() <= REACHED;
     Some(ManifestLimitLoad {
         name: load.name.clone(),
         columns: load.columns.clone(),
         unit: load.unit.clone(),
         value,
         change,
-        cells: load.width.map(|width| width / case.grid.shortest()),
+        is_reached,
+        cells: load.width.map(|width| width.cells),
+        modelled: load.width.map_or(1.0, |width| width.modelled),
         stiffness: sought.stiffness,
     })
 }
 
-/// A line on each of them, and one on each that was not reached.
+/// A line on each of them.
 pub fn told(case: &Case, loads: &[ManifestLimitLoad]) -> Vec<String> {
     let averages = case.limit_load.as_ref().is_some_and(|sought| sought.averages);
-    loads.iter().flat_map(|load| std::iter::once(line(load, averages)).chain(not_reached(load))).collect()
+    let line = |load: &ManifestLimitLoad| if load.is_reached { reached(load, averages) } else { not_reached(load) };
+    loads.iter().map(line).collect()
 }
 
-fn line(load: &ManifestLimitLoad, averages: bool) -> String {
+fn reached(load: &ManifestLimitLoad, averages: bool) -> String {
     let ManifestLimitLoad { name, value, unit, .. } = load;
+    let part = load.part();
     let errors = if averages { ERRORS_OF_AVERAGES } else { ERRORS_WITHOUT_AVERAGES };
     let expected = load.cells.map_or_else(String::new, |cells| {
         let [least, most] = errors.map(|error| 100.0 * error * STATED_CELLS / cells);
         format!(
-            " with {cells:.3} cells across its width. Verified loads were {least:.0} to {most:.0} % too high with so many, which \
-             is the unsafe side. Extrapolate it with `bsmpm limit-load`."
+            ", with {cells:.1} cells across its width. Verified footings were {least:.0} to {most:.0} % too high with so many, which \
+             is the unsafe side. Extrapolate with `bsmpm limit-load`."
         )
     });
-    format!("limit load of {name}: {value:.5e} {unit}{expected}")
+    format!("limit load of {name}{part}: {value:.4e} {unit}{expected}")
 }
 
-fn not_reached(load: &ManifestLimitLoad) -> Option<String> {
-    let ManifestLimitLoad { name, change, .. } = load;
-    let percent = 100.0 * change.abs();
-    let remedy = match () {
-        () if *change > REACHED => "still grows: the value is no limit. Increase the prescribed displacement.",
-        () if *change < -REACHED => "still falls: the value is no limit. Increase analysis.steps.",
-        () => return None,
-    };
-    Some(format!("warning: limit load of {name}: it changed by {percent:.1} % in the last quarter and {remedy}"))
+fn not_reached(load: &ManifestLimitLoad) -> String {
+    let ManifestLimitLoad { name, value, unit, change, .. } = load;
+    let percent = 100.0 * change;
+    if *value <= 0.0 {
+        return format!(
+            "warning: no limit load of {name}: the ground does not resist it ({value:.4e} {unit}). Check that it touches the ground \
+             and moves towards it."
+        );
+    }
+    let remedy = if *change > 0.0 { "Increase the prescribed displacement." } else { "Increase analysis.steps." };
+    format!(
+        "warning: no limit load of {name}: its load, {value:.4e} {unit} at the end, changed by {percent:+.1} % over the last quarter \
+         of the way. {remedy}"
+    )
 }

@@ -14,7 +14,7 @@ pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
 pub use element::{ElementStage, ElementTest};
 pub use flow::{Drain, DrainSite, Flow, Inflow};
 pub use history::{Check, Column, Counted, Face, History, Made, Quantity};
-pub use limit_load::{LimitLoad, SoughtLoad};
+pub use limit_load::{LimitLoad, LoadWidth, SoughtLoad};
 pub(crate) use loads::keeps_direction;
 pub use loads::{
     Footing, Initial, LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Shares, Site, Traction, Triangle,

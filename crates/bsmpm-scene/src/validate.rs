@@ -156,9 +156,9 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     physics::rest(&mut case, record, report);
     strip::beside_fixed(&case, report);
     section::warn_of_neighbours(&case, record, report);
-    lines::place(&mut case, record, report);
+    let inside_cells = lines::place(&mut case, record, report);
     solver::fit_weights(&mut case, record, report);
-    limit_load::complete(&mut case, record, stiffness, report);
+    limit_load::complete(&mut case, record, limit_load::Preparation { stiffness, inside_cells }, report);
     material::band::check(&case, record, report);
     physics::check(&case, record, report);
     lasting::check(&case, record, report);

@@ -62,13 +62,45 @@ fn loads_are_columns_of_the_history() {
     let case = valid(SAND, &[]);
     let load = &case.limit_load.as_ref().expect("a search").loads[0];
     assert_eq!((&*load.name, &load.columns[..]), ("footing", &[("N_gamma".to_owned(), 1.0)][..]));
-    assert_eq!(load.width, Some(2.0), "the roller cuts it in its middle");
+    let width = load.width.expect("a width");
+    assert_eq!((width.length, width.modelled), (2.0, 0.5), "the roller cuts it in its middle");
+    assert!((width.cells - 8.0).abs() < 1e-9, "{width:?}");
     // Without a history of its own there is one more column.
     let case = valid(PUNCH, &[]);
     let load = &case.limit_load.as_ref().expect("a search").loads[0];
-    assert_eq!((&*load.name, load.width), ("punch", Some(2.0)));
+    let width = load.width.expect("a width");
+    assert_eq!((&*load.name, width.length, width.modelled), ("punch", 2.0, 0.5), "half of it lies beyond the roller");
+    assert!((width.cells - 8.0).abs() < 1e-9, "{width:?}");
     assert_eq!(load.columns, [("punch-load-y".to_owned(), 1.0)], "the soil pushes it up, against its way");
     assert!(matches!(case.histories.last().expect("a history").quantity, Quantity::Rigid { body: 0, .. }));
+}
+
+/// A footing that moves along its base has a force along its way, and a pressure if it moves along its normal.
+#[test]
+fn the_load_of_a_footing_that_moves_sideways_is_its_force_along_its_way() {
+    let case = valid(SAND, &["footing.displacement=[0.03, -0.04]"]);
+    let load = &case.limit_load.as_ref().expect("a search").loads[0];
+    let columns: Vec<&str> = load.columns.iter().map(|(name, _)| &**name).collect();
+    assert_eq!(columns, ["footing-load-x", "footing-load-y"]);
+    assert!((load.columns[0].1 - 0.6).abs() < 1e-12 && (load.columns[1].1 + 0.8).abs() < 1e-12, "{load:?}");
+    // It moves by less than a thousandth of a cell, so that its end stays on its grid line.
+    assert!(case.warnings.iter().all(|warning| !warning.contains("moves along itself")), "{:?}", case.warnings);
+}
+
+#[test]
+fn motions_along_which_no_limit_load_is_found_are_refused() {
+    let graded = "grid={ lower = [0.0, 0.0], upper = [6.0, 3.5], cell = [0.4, 0.25], order = \"quadratic\" }";
+    refused(CLAY, &[graded], "ends inside a cell");
+    let stops = "footing={ from = [0.0, 3.0], to = [1.0, 3.0], base = \"smooth\", path = [[0.5, 0.0, -0.2], [1.0, 0.0, -0.2]] }";
+    refused(CLAY, &[stops], "stops or turns back");
+    let back = "footing={ from = [0.0, 3.0], to = [1.0, 3.0], base = \"smooth\", path = [[0.5, 0.0, -0.2], [1.0, 0.0, -0.1]] }";
+    refused(CLAY, &[back], "stops or turns back");
+    let wall =
+        "prescribed.0={ from = [0.0, 2.0], to = [0.0, 3.0], displacement = [0.1, 0.0], components = \"normal\" }";
+    refused(CLAY, &[wall], "[boundary] left holds the ground against");
+    // What cannot be read is no second error.
+    let errors = read(CLAY, &["footing.displacement=\"down\""]).err().expect("an error");
+    assert!(errors.iter().all(|error| !error.to_string().contains("nothing moves")), "{errors:#?}");
 }
 
 #[test]
@@ -80,6 +112,9 @@ fn what_has_no_limit_load_is_refused() {
         "material.clay={ model = \"von-mises\", young = 5e6, poisson = 0.49, yield_stress = 2e4, hardening = 1e5 }";
     refused(CLAY, &[hardening], "depends on its strain");
     refused(PUNCH, &["rigid.0.rotation=[[1.0, 5.0]]"], "rotates or is free");
+    let clay = "kappa = 0.05, lambda = 0.2, critical_ratio = 1.0, preconsolidation = \"50 kPa\"";
+    let clay = format!("material.clay={{ model = \"cam-clay\", young = 5e6, poisson = 0.3, {clay} }}");
+    assert!(read(CLAY, &[&clay]).is_err());
     let in_time = "analysis={ type = \"quasi-static-in-time\", end = 1.0, purpose = \"limit-load\" }";
     refused(CLAY, &[in_time], "needs type = \"quasi-static\"");
 }
@@ -97,7 +132,7 @@ fn settings_with_which_limit_loads_are_wrong_are_warned_of() {
     assert!(!warned(&valid(SAND, &[averaged, "material.sand.cohesion=\"20 kPa\""]), "32 % too low"));
     // gamma B = 40 kPa.
     let small = valid(SAND, &["material.sand.cohesion=\"0.5 kPa\""]);
-    assert!(warned(&small, "1.3e-2 of the weight"), "{:?}", small.warnings);
+    assert!(warned(&small, "c / (gamma B) = 1.3e-2"), "{:?}", small.warnings);
     assert_eq!(small.limit_load.expect("a search").small_cohesions, ["sand"]);
-    assert!(!warned(&valid(SAND, &["material.sand.cohesion=\"10 kPa\""]), "of the weight"));
+    assert!(!warned(&valid(SAND, &["material.sand.cohesion=\"10 kPa\""]), "gamma B"));
 }

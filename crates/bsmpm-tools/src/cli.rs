@@ -27,7 +27,7 @@ pub enum Command {
     Validate(validate::ValidateArguments),
     /// Find the factor of safety of a case by strength reduction
     Fos(fos::FosArguments),
-    /// Find the load under which the ground fails at what is moved, on two or three grids, and extrapolate it
+    /// Find the load under which the ground fails at what is moved, on two to four grids, and extrapolate it
     LimitLoad(Box<limit_load::LimitLoadArguments>),
     /// Vary settings of a case and weigh the error of its results against their cost
     Sweep(Box<sweep::SweepArguments>),
@@ -73,8 +73,11 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             print(&table, &pictures);
         }
         Command::LimitLoad(arguments) => {
-            let (table, files) = limit_load::run(arguments, say)?;
-            print(&table, &files);
+            let found = limit_load::run(arguments, say)?;
+            print(&found.text, &found.files);
+            if !found.is_reached {
+                return Err(Error::NoLimitLoad);
+            }
         }
         Command::Sweep(arguments) => {
             let (table, files) = sweep::run(arguments, say)?;
@@ -117,13 +120,14 @@ mod tests {
     use clap::CommandFactory;
 
     /// What the help says of some codes.
-    const WORDS: [(&str, u8); 9] = [
+    const WORDS: [(&str, u8); 10] = [
         ("command line", USAGE),
         ("has errors", CASE),
         ("no such case", MISSING),
         ("does not start", WRITE),
         ("could not be written", WRITE),
         ("no stable state", NO_CONVERGENCE),
+        ("no limit was reached", NO_CONVERGENCE),
         ("no run came to its end", NO_CONVERGENCE),
         ("done, whatever", DONE),
         ("estimated", DONE),

@@ -64,6 +64,9 @@ pub enum Error {
         /// What was found, and what to try.
         reason: String,
     },
+    /// A load has reached no limit.
+    #[error("no limit was reached; the table says why")]
+    NoLimitLoad,
     /// Tests of one point that a material cannot follow.
     #[error("{} test(s) did not come to their end:\n  {}", failed.len(), failed.join("\n  "))]
     Element {
@@ -121,7 +124,9 @@ impl Error {
             Self::Usage { .. } => exit::USAGE,
             Self::Missing { .. } => exit::MISSING,
             Self::BadReference { .. } | Self::BadCase { .. } | Self::NoFactor { .. } => exit::CASE,
-            Self::NoStableState { .. } | Self::NoResult { .. } | Self::Element { .. } => exit::NO_CONVERGENCE,
+            Self::NoStableState { .. } | Self::NoResult { .. } | Self::Element { .. } | Self::NoLimitLoad => {
+                exit::NO_CONVERGENCE
+            }
             Self::Run { code, .. } => *code,
             Self::NotValid { .. } => exit::CHECK,
             Self::Launch { .. } => exit::WRITE,

@@ -29,18 +29,19 @@ The case is run with [analysis] purpose = \"limit-load\", whether it says so or 
 and tolerances which the case does not give, and raises the stiffness, so that the geometry stays as drawn (the notes of
 `bsmpm-par CASE --check` list them). Something must be moved: [footing], [[prescribed]] or [[rigid]].
 
-The first grid is the case's own; each further one has cells half as large. Limit loads converge from above with an error in
-proportion to the size of the cells, so the extrapolated load is 2 fine - coarse, of the two finest grids. Its band is half of
-what the finest grid is off, or the difference from the extrapolation of the two grids before, whichever is larger. In all
-verified cases it contains the exact load.
+The first grid is the case's own; each further one has cells half as large. Limit loads of footings converge from above, with
+an error in proportion to the size of the cells, so the extrapolated load is 2 fine - coarse, of the two finest grids. Its band
+is half of what the finest grid is off (all of it where loads rise as cells shrink), or the difference from the extrapolation
+of the two grids before, whichever is larger. In all verified cases it contains the exact load. Where the load still changes
+by more than 1 % over the last quarter of the way, there is no limit load: nothing is extrapolated.
 
 If a material has friction, and a cohesion that is small against its weight, one more run on the coarsest grid without this
-cohesion tells its part of the load.
+cohesion measures its part of the load, at least.
 
 DIR gets limit-load.json, limit-load.csv, limit-load.png (load against displacement) and runs/. Finished runs are kept.
 
-Exit codes: 0 found; 2 command line; 65 the case has errors, or nothing moves; 66 no such case; that of a run that did not
-come to its end.
+Exit codes: 0 found; 2 command line; 65 the case has errors, or nothing moves; 66 no such case; 80 no limit was reached; that
+of a run that did not come to its end.
 
 Examples:
   bsmpm limit-load footing.toml
@@ -56,13 +57,23 @@ pub struct LimitLoadArguments {
     pub options: Options,
 }
 
-/// Finds the loads; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the
-/// files.
+/// What was found, for the screen.
+#[derive(Debug)]
+pub struct FoundLimitLoads {
+    /// Tables and sentences.
+    pub text: String,
+    /// What was written.
+    pub files: Vec<PathBuf>,
+    /// Whether every load has reached its limit on every grid.
+    pub is_reached: bool,
+}
+
+/// Finds the loads; `told` gets a line for every run as soon as it is there.
 ///
 /// # Errors
 /// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not
 /// come to its end; those of files.
-pub fn run(arguments: &LimitLoadArguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+pub fn run(arguments: &LimitLoadArguments, mut told: impl FnMut(&str)) -> Result<FoundLimitLoads, Error> {
     let (options, path) = (&arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".limit-load"));
     let bytes = case::load(path)?;
@@ -76,11 +87,15 @@ pub fn run(arguments: &LimitLoadArguments, mut told: impl FnMut(&str)) -> Result
     for (order, outcome) in orders.iter().zip(&outcomes).take(grids) {
         ended(order, outcome)?;
     }
-    let without_cohesion = outcomes.get(grids).filter(|outcome| outcome.state == RunState::Done);
+    let without_cohesion = outcomes.get(grids);
+    if let Some(outcome) = without_cohesion.filter(|outcome| outcome.state != RunState::Done) {
+        told(&format!("the run without small cohesions did not come to its end: {}", outcome.reason));
+    }
+    let without_cohesion = without_cohesion.filter(|outcome| outcome.state == RunState::Done);
     let report = LimitLoadReport::of(&orders[..grids], &outcomes[..grids], without_cohesion)?;
     let mut files = save(&output, NAME, &report.csv(), &report)?;
     files.extend(picture::draw(&report, &orders[..grids], &outcomes[..grids], &output)?);
-    Ok((report.text(), files))
+    Ok(FoundLimitLoads { text: report.text(), files, is_reached: report.is_reached() })
 }
 
 fn ended(order: &RunOrder, outcome: &Outcome) -> Result<(), Error> {

@@ -85,12 +85,27 @@ pub struct ManifestLimitLoad {
     pub unit: String,
     /// At the end of the run.
     pub value: f64,
-    /// (value - value at three quarters of the run) / value: near zero where the limit has been reached.
+    /// (value - value at three quarters of the way) / value.
     pub change: f64,
+    /// Whether the value is a limit: positive, and with a change of at most 1 %.
+    pub is_reached: bool,
     /// Cells across what is moved; none where it has no width of its own.
     pub cells: Option<f64>,
+    /// Part of what is moved that is modelled: one half or one quarter at planes of symmetry.
+    pub modelled: f64,
     /// Young's moduli were multiplied, and prescribed displacements divided, by this factor.
     pub stiffness: f64,
+}
+
+impl ManifestLimitLoad {
+    /// Which part of the whole a force is of, in words; nothing of a pressure, or of the whole.
+    pub fn part(&self) -> String {
+        let is_force = !self.unit.ends_with("Pa");
+        match is_force && self.modelled < 1.0 {
+            true => format!(" (the modelled {} of it)", if self.modelled < 0.5 { "quarter" } else { "half" }),
+            false => String::new(),
+        }
+    }
 }
 
 /// How the state at the start was balanced.

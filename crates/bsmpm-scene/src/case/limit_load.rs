@@ -27,6 +27,17 @@ pub struct SoughtLoad {
     pub unit: String,
     /// Its way, as it is run.
     pub path: MotionPath,
-    /// m  its width at the start; `None` where it has none of its own, as a face of the grid
-    pub width: Option<f64>,
+    /// Its width at the start; `None` where it has none of its own, as a face of the grid.
+    pub width: Option<LoadWidth>,
+}
+
+/// The width of what is moved, across its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadWidth {
+    /// m  of the whole, where a plane of symmetry cuts it
+    pub length: f64,
+    /// Cells across it.
+    pub cells: f64,
+    /// Part of the whole that is modelled: 1, or one half or one quarter at planes of symmetry.
+    pub modelled: f64,
 }

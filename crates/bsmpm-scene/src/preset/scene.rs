@@ -118,7 +118,7 @@ impl<'a> PresetScene<'a> {
     }
 
     /// Whether displacements are divided until they are small against cells.
-    fn seeks_limit_load(&self) -> bool {
+    pub(super) fn seeks_limit_load(&self) -> bool {
         self.root.record("analysis").and_then(|analysis| analysis.word("purpose")) == Some(Purpose::LimitLoad)
     }
 

@@ -5,14 +5,14 @@
 
 use super::site;
 use crate::case::{
-    Case, Footing, History, LimitLoad, MotionPath, NamedMaterial, Prescribed, Quantity, Rigid, RigidShape, Site,
-    SoughtLoad,
+    Case, Footing, History, LimitLoad, LoadWidth, MotionPath, NamedMaterial, Prescribed, Quantity, Rigid, RigidShape,
+    Site, SoughtLoad,
 };
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces::name_of_strip;
-use crate::words::{AnalysisType, Measurement, Purpose, Support};
+use crate::words::{AnalysisType, Geometry, Measurement, Purpose, Side, Support, Word};
 use bsmpm::material::Material;
 use bsmpm::stabilisation::Stabilisation;
 
@@ -30,6 +30,8 @@ const ASSOCIATED: f64 = 0.5;
 const DILATES: f64 = 10.0 * std::f64::consts::PI / 180.0;
 /// Cohesion over the stress by the weight of as much soil as the footing is wide, up to which it counts as small.
 const SMALL_COHESION: f64 = 0.05;
+/// Component of a unit vector from which on a way counts as normal to a footing.
+const ALONG_NORMAL: f64 = 1.0 - 1e-6;
 /// The key and its table.
 const KEY: &str = "purpose";
 
@@ -61,7 +63,8 @@ pub(super) fn shrink(
     mut moved: MovedBodies<'_>,
     report: &mut Report<'_>,
 ) -> f64 {
-    let Some(analysis) = root.record("analysis").filter(|_| is_sought(root)) else { return 1.0 };
+    // What could not be read does not move.
+    let Some(analysis) = root.record("analysis").filter(|_| is_sought(root) && !report.failed()) else { return 1.0 };
     let farthest = moved.paths().map(|path| path.farthest()).fold(0.0, f64::max);
     if farthest == 0.0 {
         let message = "nothing moves: give [footing], [[prescribed]] or [[rigid]] a displacement. For the factor of safety \
@@ -83,12 +86,21 @@ pub(super) fn shrink(
     factor
 }
 
+/// What is known of a case before its loads are.
+pub(super) struct Preparation {
+    /// By which Young's moduli were multiplied.
+    pub(super) stiffness: f64,
+    /// Names of what ends inside a cell.
+    pub(super) inside_cells: Vec<String>,
+}
+
 /// What the case looks for, with columns of its history for each load; refuses what has no limit load, and warns of
 /// what makes it wrong.
-pub(super) fn complete(case: &mut Case, root: &Record, stiffness: f64, report: &mut Report<'_>) {
+pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, report: &mut Report<'_>) {
     warn_of_averages(case, report);
     let Some(analysis) = root.record("analysis").filter(|_| is_sought(root)) else { return };
     refuse(case, analysis, report);
+    refuse_motions(case, analysis, &prepared.inside_cells, report);
     if case.solver.force_tolerance > FORCE_TOLERANCE {
         let message = format!("limit loads are wrong with more than {FORCE_TOLERANCE:e}. Delete it");
         root.record("solver").into_iter().for_each(|solver| solver.error("force_tolerance", &message, report));
@@ -97,6 +109,7 @@ pub(super) fn complete(case: &mut Case, root: &Record, stiffness: f64, report: &
     let loads = sought(case);
     let small_cohesions = small_cohesions(case, &loads, report);
     let averages = case.stabilisation.averages();
+    let stiffness = prepared.stiffness;
     case.limit_load = Some(LimitLoad { stiffness, loads, small_cohesions, averages });
 }
 
@@ -110,7 +123,8 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
         let message = "not available where water flows: its pressure depends on the stiffness. Delete it";
         analysis.error(KEY, message, report);
     }
-    if case.strength_reduction.is_some() {
+    let is_divided = case.stages.iter().any(|stage| stage.strength_reduction.is_some());
+    if case.strength_reduction.is_some() || is_divided {
         analysis.error(KEY, "[strength_reduction] chooses a stiffness, too. Delete one of them", report);
     }
     let follows_strain = |material: &Material| material.softens() || material.hardens() || !material.is_linear();
@@ -122,6 +136,10 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
         );
         analysis.error(KEY, message, report);
     }
+}
+
+/// Refuses motions along which no limit load is found.
+fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], report: &mut Report<'_>) {
     if let Some(rigid) = case.rigid.iter().find(|rigid| !rigid.rotation.is_empty() || rigid.free.contains(&true)) {
         let message = format!(
             "rigid `{}` rotates or is free; a limit load is sought along a prescribed path. Delete `rotation` and `free`",
@@ -129,6 +147,54 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
         );
         analysis.error(KEY, message, report);
     }
+    if let Some(name) = inside_cells.first() {
+        let message = format!(
+            "{name} ends inside a cell, so that its load cannot be extrapolated. Put a grid line there, by grid.cell or \
+             [grid.knots]"
+        );
+        analysis.error(KEY, message, report);
+    }
+    let strips = case.footing.iter().map(|of| (of.site, &of.path));
+    let strips = strips.chain(case.prescribed.iter().map(|of| (of.site, &of.path)));
+    let rigid = case.rigid.iter().map(|rigid| &rigid.path);
+    let mut paths = strips.clone().map(|(_, path)| path).chain(rigid);
+    if paths.any(|path| path.moves() && !goes_on(path, case.analysis.end)) {
+        let message = "a prescribed path stops or turns back before the end of the run, where the load is read. Let the \
+                       displacement grow until analysis.end";
+        analysis.error(KEY, message, report);
+    }
+    if let Some(side) = strips.filter(|(_, path)| path.moves()).find_map(|(site, path)| opposed(case, site, path)) {
+        let message = format!(
+            "[boundary] {side} holds the ground against a prescribed motion that lies on it: its load would be zero. Make {side} \
+             \"free\""
+        );
+        analysis.error(KEY, message, report);
+    }
+}
+
+/// Whether a path leads farther from the start all the time until the end of the run.
+fn goes_on(path: &MotionPath, end: f64) -> bool {
+    let distance = |t: f64| path.at(t).iter().fold(0.0, |length: f64, along| length.hypot(*along));
+    let rows = path.rows.iter().map(|(t, _)| *t).filter(|t| *t < end).chain([end]);
+    let distances: Vec<f64> = std::iter::once(0.0).chain(rows.map(distance)).collect();
+    distances.windows(2).all(|pair| pair[1] > pair[0])
+}
+
+/// The face on which a segment or plate lies and which holds the component along which it moves.
+fn opposed(case: &Case, site: Site, path: &MotionPath) -> Option<&'static str> {
+    if matches!(site, Site::Face(_)) {
+        return None; // refused where it is read
+    }
+    let (corners, lower, upper) = (site::corners(site, &case.grid), case.grid.lower(), case.grid.upper());
+    let sides = Side::of(case.geometry).iter().enumerate();
+    let faces = sides.flat_map(|(axis, sides)| [(axis, 0, sides[0]), (axis, 1, sides[1])]);
+    let holds = |(axis, end, _): &(usize, usize, Side)| {
+        let at = [lower, upper][*end][*axis];
+        let lies = corners.iter().all(|corner| corner[*axis] == at);
+        let moves = path.rows.iter().any(|(_, moved)| moved[*axis] != 0.0);
+        lies && moves && matches!(case.boundary[*axis][*end], Support::Roller | Support::Fixed)
+    };
+    faces.into_iter().find(holds).map(|(.., side)| side.word())
 }
 
 /// Warns of points, and of flow rules, with which limit loads were shown to be off.
@@ -140,6 +206,12 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
             "points_per_cell: {most} lock soil that dilates; limit loads are up to 20 % higher than with {POINTS}. Use \
              points_per_cell = {POINTS}."
         ));
+    }
+    if case.grid.order != 2 {
+        report.warn(
+            "grid.order: limit loads were verified with quadratic splines. With others neither the error nor the band of the \
+             extrapolated load is known. Use \"quadratic\".",
+        );
     }
     let is_far_off = |named: &&NamedMaterial| {
         let (friction, dilation) = (friction(&named.material), named.material.dilation());
@@ -191,7 +263,7 @@ fn cohesion(material: &Material) -> Option<f64> {
 /// Names the materials whose cohesion is small against the weight of as much soil as the narrowest strip is wide, and
 /// warns of them.
 fn small_cohesions(case: &Case, loads: &[SoughtLoad], report: &mut Report<'_>) -> Vec<String> {
-    let width = loads.iter().filter_map(|load| load.width).reduce(f64::min);
+    let width = loads.iter().filter_map(|load| load.width).map(|width| width.length).reduce(f64::min);
     let (Some(gravity), Some(width)) = (&case.gravity, width) else { return Vec::new() };
     let g = gravity.acceleration[case.grid.dims() - 1].abs();
     let share = |named: &NamedMaterial| Some(cohesion(&named.material)? / (named.density? * g * width));
@@ -201,8 +273,8 @@ fn small_cohesions(case: &Case, loads: &[SoughtLoad], report: &mut Report<'_>) -
             continue;
         };
         report.warn(format!(
-            "material.{}: its cohesion is {share:.1e} of the weight per area of soil as deep as the load is wide. Small as it is, \
-             it carries a part of the load: 1.2e-2 raised that of a strip on sand by 14 %. `bsmpm limit-load` tells its part.",
+            "material.{}: c / (gamma B) = {share:.1e}, with the width B of the load. A cohesion as small as this still carries a part \
+             of it: 1.2e-2 raised the load of a smooth strip on sand by 14 %. Use cohesion = 0 if it was given for stability only.",
             named.name
         ));
         small.push(named.name.clone());
@@ -233,7 +305,7 @@ fn sought(case: &mut Case) -> Vec<SoughtLoad> {
         }
         let name = rigid.name.clone();
         let path = rigid.path.clone();
-        let moved = Moved { name, path, width: width_of(rigid) };
+        let moved = Moved { name, path, width: width_of(case, rigid) };
         // The soil pushes it against its motion.
         let quantity = Quantity::Rigid { what: Measurement::RigidForce, body };
         loads.push(recorded(case, quantity, along(&moved.path, -1.0), moved));
@@ -245,11 +317,19 @@ fn sought(case: &mut Case) -> Vec<SoughtLoad> {
 struct Moved {
     name: String,
     path: MotionPath,
-    width: Option<f64>, // m
+    width: Option<LoadWidth>,
 }
 
-/// The footing's load: the case's own column of its pressure or force, or one more of the pressure.
+/// The footing's load: the case's own column of its pressure or force, or one more of the pressure; of a footing that does
+/// not move along its normal the force along its way.
 fn of_footing(case: &mut Case, moved: Moved) -> SoughtLoad {
+    let normal = case.footing.as_ref().map_or([0.0; 3], |footing| site::normal_of(footing.site));
+    let way = along(&moved.path, 1.0);
+    let part: f64 = way.iter().zip(normal).map(|(way, normal)| way * normal).sum();
+    if part.abs() < ALONG_NORMAL {
+        let quantity = Quantity::Strip { number: 0, measured: Measurement::Reaction };
+        return recorded(case, quantity, way, moved);
+    }
     let is_own = |history: &&History| matches!(history.quantity, Quantity::FootingPressure | Quantity::FootingForce);
     match case.histories.iter().find(is_own) {
         Some(own) => of_history(&own.clone(), &[1.0], moved),
@@ -292,36 +372,55 @@ fn along(path: &MotionPath, sign: f64) -> Vec<f64> {
     farthest.iter().map(|component| sign * component / size(&farthest)).collect()
 }
 
-/// m  Width of a strip, twice what is there where one of its ends lies on a roller, which is its middle; of a plate the
-/// shorter side.
-fn width_of_strip(case: &Case, site: Site) -> Option<f64> {
+/// Width of a strip; of a plate that of its shorter side.
+fn width_of_strip(case: &Case, site: Site) -> Option<LoadWidth> {
     let [from, to] = match site {
         Site::Face(_) => return None,
         Site::Segment { .. } | Site::Plate(_) => site::corners(site, &case.grid),
     };
-    let widths = (0..case.grid.dims()).filter(|axis| from[*axis] != to[*axis]).map(|axis| {
-        let ends = [from[axis].min(to[axis]), from[axis].max(to[axis])];
-        let faces = [case.grid.lower()[axis], case.grid.upper()[axis]];
-        let is_cut = |side: &usize| case.boundary[axis][*side] == Support::Roller && ends[*side] == faces[*side];
-        let is_half = (0..2).filter(is_cut).count() == 1;
-        (ends[1] - ends[0]) * if is_half { 2.0 } else { 1.0 }
-    });
-    widths.reduce(f64::min)
+    let sides = (0..case.grid.dims()).filter(|axis| from[*axis] != to[*axis]);
+    narrowest(sides.map(|axis| side(case, axis, from[axis].min(to[axis]), from[axis].max(to[axis]))))
 }
 
-/// m  Width of a rigid body across its way: of the sides of the box around it the shortest that it does not move along.
-fn width_of(rigid: &Rigid) -> Option<f64> {
-    let flat = |[lower, upper]: [[f64; 2]; 2]| vec![upper[0] - lower[0], upper[1] - lower[1]];
-    let sides = match &rigid.shape {
-        RigidShape::Circle { radius, .. } => vec![2.0 * radius; 2],
-        RigidShape::Polygon(corners) => flat(crate::region::bounds(corners)),
-        RigidShape::InSpace(solid) => {
-            let [lower, upper] = solid.corners();
-            (0..3).map(|axis| upper[axis] - lower[axis]).collect()
-        }
+/// Width of a rigid body across its way, of the box around it.
+fn width_of(case: &Case, rigid: &Rigid) -> Option<LoadWidth> {
+    let flat = |[x, y]: [f64; 2]| [x, y, 0.0];
+    let [lower, upper] = match &rigid.shape {
+        RigidShape::Circle { center, radius } => [-radius, *radius].map(|by| flat(center.map(|at| at + by))),
+        RigidShape::Polygon(corners) => crate::region::bounds(corners).map(flat),
+        RigidShape::InSpace(solid) => solid.corners(),
     };
-    let way = along(&rigid.path, 1.0).into_iter().map(f64::abs);
-    let main = way.clone().fold(0.0, f64::max);
-    let across = sides.into_iter().zip(way).filter(|(_, part)| *part < main).map(|(side, _)| side);
-    across.reduce(f64::min).filter(|width| width.is_finite())
+    let way: Vec<f64> = along(&rigid.path, 1.0).into_iter().map(f64::abs).collect();
+    let main = way.iter().copied().fold(0.0, f64::max);
+    let across = (0..case.grid.dims()).filter(|axis| way[*axis] < main);
+    narrowest(across.map(|axis| side(case, axis, lower[axis], upper[axis])))
+}
+
+/// The shortest of several sides, with the part of all of them that is modelled.
+fn narrowest(sides: impl Iterator<Item = LoadWidth>) -> Option<LoadWidth> {
+    let sides: Vec<LoadWidth> = sides.collect();
+    let modelled = sides.iter().map(|side| side.modelled).product();
+    let shortest = sides.into_iter().min_by(|a, b| a.length.total_cmp(&b.length));
+    shortest.filter(|side| side.length.is_finite()).map(|side| LoadWidth { modelled, ..side })
+}
+
+/// A side along an axis, given by its ends (m). Where one of them lies on a roller or beyond it, that is a plane of
+/// symmetry, and the whole is twice what lies inside.
+fn side(case: &Case, axis: usize, lower: f64, upper: f64) -> LoadWidth {
+    let cells = &case.grid.axes[axis];
+    let faces = [case.grid.lower()[axis], case.grid.upper()[axis]];
+    let is_cut = |side: usize, is_beyond: bool| {
+        let holds = case.boundary[axis][side] == Support::Roller;
+        let is_axis = case.geometry == Geometry::Axisymmetric && (axis, side) == (0, 0);
+        (holds || is_axis) && is_beyond
+    };
+    let cut = [is_cut(0, lower <= faces[0]), is_cut(1, upper >= faces[1])];
+    let (first, last) = (lower.max(faces[0]), upper.min(faces[1]));
+    let inside = |i: usize| {
+        let [from, to] = [i, i + 1].map(|i| cells.lower() + cells.breakpoint(i));
+        (to.min(last) - from.max(first)).max(0.0) / (to - from)
+    };
+    let count: f64 = (0..cells.cells()).map(inside).sum();
+    let whole = if cut[0] != cut[1] { 2.0 } else { 1.0 };
+    LoadWidth { length: whole * (last - first), cells: whole * count, modelled: 1.0 / whole }
 }

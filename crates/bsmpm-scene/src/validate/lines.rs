@@ -36,10 +36,11 @@ const SHOWN: f64 = 100.0;
 const CROSSED: f64 = 0.25;
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
-/// Adds the lines to a case's grid, tells where and why, and warns of places where none can be.
-pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
+/// Adds the lines to a case's grid, tells where and why, and warns of places where none can be. Returns the names of what
+/// ends inside a cell.
+pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -> Vec<String> {
     if case.grid.order == 1 {
-        return; // Every grid line is one.
+        return Vec::new(); // Every grid line is one.
     }
     let mut found = FoundLine::at_interfaces(case);
     if case.grid.dims() == 2 {
@@ -97,6 +98,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) {
         ));
     }
     found.doubts.into_values().for_each(|doubt| report.warn(doubt));
+    found.inside
 }
 
 /// Soil whose strength friction makes, and in which no water flows although it fills it.
@@ -125,6 +127,7 @@ struct FoundLine {
     held: BTreeMap<(usize, usize), f64>, // those of them at the ends of strips: how far these go, m
     doubts: BTreeMap<String, String>,
     narrow: Vec<(&'static str, usize, String)>,
+    inside: Vec<String>, // names of what ends inside a cell
 }
 
 impl FoundLine {

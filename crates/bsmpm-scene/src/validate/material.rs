@@ -3,7 +3,7 @@
 pub(super) mod band;
 mod law;
 
-use super::{STANDARD_GRAVITY, reduction};
+use super::{STANDARD_GRAVITY, limit_load, reduction};
 use crate::case::{Body, NamedMaterial, Stage};
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -37,6 +37,8 @@ pub(super) struct Reduction {
     elastic: bool,
     /// that Young's modulus is multiplied by
     stiffness: f64,
+    /// the case seeks a limit load, which multiplies it
+    is_for_limit_load: bool,
 }
 
 impl Reduction {
@@ -46,7 +48,8 @@ impl Reduction {
         let number = |table: Option<&Record>, key| table.and_then(|table| table.number(key)).unwrap_or(1.0);
         let elastic = table.and_then(|table| table.flag("elastic")).unwrap_or(false);
         let factor = number(reduction::at_start(root), "factor");
-        Self { factor, elastic, stiffness: stiffness * number(table, "stiffness") }
+        let is_for_limit_load = limit_load::is_sought(root);
+        Self { factor, elastic, stiffness: stiffness * number(table, "stiffness"), is_for_limit_load }
     }
 }
 
@@ -89,7 +92,7 @@ fn read(
         layer.check(record, ("young", &Range::POSITIVE), young, report);
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
-    let Reduction { factor, elastic, stiffness } = around.reduction;
+    let Reduction { factor, elastic, stiffness, is_for_limit_load } = around.reduction;
     let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
     if factor != 1.0 && !elastic && of_yield {
         let message = "with a strength_reduction.factor the yield surface through the stress at the start, which this is the \
@@ -101,7 +104,7 @@ fn read(
     let young = Profile { value: stiffness * young.value, per_metre: stiffness * young.per_metre, ..young };
     if elastic || stiffness != 1.0 {
         let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
-        let reason = if elastic { "strength_reduction.elastic" } else { "strength_reduction or analysis.purpose" };
+        let reason = if is_for_limit_load { "analysis.purpose" } else { "strength_reduction.elastic and .stiffness" };
         report.note(&record.path, value, reason);
     }
     let material = law.material(record, (young, poisson), (layer.as_ref(), factor))?;

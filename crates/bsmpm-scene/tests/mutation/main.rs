@@ -163,6 +163,17 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
     ],
 ];
 
+/// A case that seeks a limit load.
+const LIMIT_LOAD: &str = r#"geometry = "plane-strain"
+analysis = { type = "quasi-static", steps = 4, purpose = "limit-load" }
+boundary = { bottom = "fixed", left = "roller", right = "roller" }
+grid = { lower = [0.0, 0.0], upper = [4.0, 2.5], cell = 0.25, order = "quadratic" }
+material.clay = { model = "tresca", young = "5 MPa", poisson = 0.49, cohesion = "10 kPa" }
+body = [{ material = "clay", box = { lower = [0.0, 0.0], upper = [4.0, 2.0] }, points_per_cell = 2 }]
+footing = { from = [0.0, 2.0], to = [1.0, 2.0], displacement = [0.0, -0.1], base = "smooth" }
+stabilisation = { method = "consistent-f-bar" }
+"#;
+
 fn bases() -> Vec<String> {
     let later =
         format!("{STATIC}\n[strength_reduction]\nfactor = 1.2\nstage = \"end\"\nsteps = 5\ndrainage = \"drained\"\n");
@@ -182,7 +193,15 @@ fn bases() -> Vec<String> {
     ];
     let retired = "background_kind = \"strain\"\nbackground_cells = \"occupied\"";
     let retired = format!("{STATIC}\n[solver]\nextension = \"linear\"\n{retired}\n");
-    let mut bases = vec![FULL.to_owned(), STATIC.to_owned(), later, retired, RUBBING.to_owned(), SEEPING.to_owned()];
+    let mut bases = vec![
+        LIMIT_LOAD.to_owned(),
+        FULL.to_owned(),
+        STATIC.to_owned(),
+        later,
+        retired,
+        RUBBING.to_owned(),
+        SEEPING.to_owned(),
+    ];
     bases.extend(still.map(wet));
     let ratio = STATIC.replacen("poisson = 0.3", "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3", 1);
     bases.push(format!("{ratio}\n[gravity]\nacceleration = [0.0, -9.81]\n"));

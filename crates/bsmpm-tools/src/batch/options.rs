@@ -29,7 +29,8 @@ pub struct Options {
     /// Override one key of the case in all runs, as for bsmpm-par; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Where everything is written [default: the case's stem with .sweep or .verify, in the working directory]
+    /// Where everything is written [default: the case's stem and an ending that names the command, in the
+    /// working directory]
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Repeat runs that are there already

@@ -8,10 +8,11 @@ use crate::batch::RunOrder;
 use crate::launch::{Outcome, RunCost};
 use crate::report::{Quoted, ReportTable, number, or_dash};
 
-/// Part of what the finest grid is off within which the extrapolated load lies: up to 0.2 in verified cases.
+/// Part of what the finest grid is off within which the extrapolated load lies, for loads that fall as cells shrink: up to
+/// 0.2 in verified cases.
 const BAND: f64 = 0.5;
-/// Relative change of the load in the last quarter of a run up to which its limit counts as reached.
-const REACHED: f64 = 0.01;
+/// The same of loads that rise, as that on a smooth wall, whose error is of higher order.
+const BAND_FROM_BELOW: f64 = 1.0;
 
 /// A load on a grid.
 #[derive(Clone, Debug, Serialize)]
@@ -26,8 +27,11 @@ pub(super) struct GridLoad {
     pub unit: String,
     /// Column of `history.csv`, if the load is one.
     pub column: Option<String>,
-    /// In the last quarter of the run, over the load.
+    /// Over the last quarter of the way, over the load.
     pub change: f64,
+    pub is_reached: bool,
+    /// Which part of the whole a force is of, in words.
+    pub part: String,
     #[serde(flatten)]
     pub cost: RunCost,
 }
@@ -42,6 +46,8 @@ pub(super) struct ExtrapolatedLoad {
     pub unit: String,
     /// The load lies within so much of the extrapolated one.
     pub band: f64,
+    /// Which part of the whole a force is of, in words.
+    pub part: String,
     /// That of the finest grid over the extrapolated one, less one; positive: too high.
     pub finest: f64,
     /// Of convergence, from three grids.
@@ -61,6 +67,8 @@ pub(super) struct LimitLoadReport {
     pub steps: u64,
     pub loads: Vec<ExtrapolatedLoad>,
     pub grids: Vec<GridLoad>,
+    /// What is doubtful about the case, on any of the grids.
+    pub warnings: Vec<String>,
 }
 
 impl LimitLoadReport {
@@ -81,7 +89,15 @@ impl LimitLoadReport {
         let own = &orders[0].case;
         let names = loads(&outcomes[0]).iter().map(|load| &load.name);
         let without = |name: &str| without_cohesion.and_then(|outcome| value(outcome, name));
-        let extrapolated = names.map(|name| ExtrapolatedLoad::of(name, &grids, without(name)));
+        let is_reached = |name: &&String| grids.iter().all(|grid| grid.name != **name || grid.is_reached);
+        let names: Vec<&String> = names.filter(is_reached).collect();
+        let extrapolated = names.into_iter().map(|name| ExtrapolatedLoad::of(name, &grids, without(name)));
+        let mut warnings: Vec<String> = Vec::new();
+        for warning in orders.iter().flat_map(|order| &order.case.warnings) {
+            if !warnings.contains(warning) {
+                warnings.push(warning.clone());
+            }
+        }
         Ok(Self {
             title: if own.title.is_empty() { "Limit load".to_owned() } else { own.title.clone() },
             stiffness: own.limit_load.as_ref().map_or(1.0, |sought| sought.stiffness),
@@ -90,7 +106,13 @@ impl LimitLoadReport {
             steps: (own.analysis.end / own.analysis.dt).round() as u64,
             loads: extrapolated.collect(),
             grids,
+            warnings,
         })
+    }
+
+    /// Whether every load has reached its limit on every grid.
+    pub fn is_reached(&self) -> bool {
+        self.grids.iter().all(|grid| grid.is_reached)
     }
 
     /// For the screen.
@@ -103,15 +125,16 @@ impl LimitLoadReport {
             .right("cells across", |row| or_dash(row.cells.map(number)))
             .right("load", |row| number(row.load))
             .column("unit", |row| &row.unit)
-            .right("last quarter %", |row| format!("{:+.2}", 100.0 * row.change))
+            .right("change %", |row| format!("{:+.2}", 100.0 * row.change))
             .right("steps", |row| row.cost.steps)
             .right("iterations", |row| row.cost.iterations)
             .right("cuts", |row| row.cost.cuts)
             .right("CPU s", |row| format!("{:.1}", row.cost.cpu_seconds));
         let found: String = self.loads.iter().map(ExtrapolatedLoad::text).collect();
-        let unfinished: String = self.grids.iter().filter_map(GridLoad::doubt).collect();
+        let unfinished: String = self.grids.iter().filter(|grid| !grid.is_reached).map(GridLoad::doubt).collect();
+        let warnings: String = self.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect();
         format!(
-            "{}\n{} points along each axis of a cell; stabilisation {}; {} steps; Young's moduli x {} on the first grid\n\n{}\n{found}{unfinished}",
+            "{warnings}{}\n{} points along each axis of a cell; stabilisation {}; {} steps; Young's moduli x {} on the first grid\n\n{}\n{found}{unfinished}",
             self.title,
             self.points_per_cell[0],
             self.stabilisation,
@@ -159,24 +182,28 @@ impl GridLoad {
             unit: load.unit.clone(),
             column: load.columns.first().filter(|_| load.columns.len() == 1).map(|(name, _)| name.clone()),
             change: load.change,
+            is_reached: load.is_reached,
+            part: load.part(),
             cost: outcome.cost,
         }
     }
 
     /// A line where the limit was not reached.
-    fn doubt(&self) -> Option<String> {
-        let changed = 100.0 * self.change;
-        let remedy = match () {
-            () if self.change > REACHED => "Increase the prescribed displacement.",
-            () if self.change < -REACHED => "Increase analysis.steps.",
-            () => return None,
-        };
-        let name = &self.name;
-        Some(format!(
-            "warning: the load of {name} with cells of {} m changed by {changed:+.1} % in the last quarter: it is no limit. \
-             {remedy}\n",
-            number(self.cell)
-        ))
+    fn doubt(&self) -> String {
+        let Self { name, load, change, .. } = self;
+        let cell = number(self.cell);
+        if *load <= 0.0 {
+            return format!(
+                "No limit load of {name} with cells of {cell} m: the ground does not resist it. Check that it touches the ground and \
+                 moves towards it.\n"
+            );
+        }
+        let remedy = if *change > 0.0 { "Increase the prescribed displacement." } else { "Increase analysis.steps." };
+        let changed = 100.0 * change;
+        format!(
+            "No limit load of {name} with cells of {cell} m: its load changed by {changed:+.1} % over the last quarter of the way. \
+             {remedy}\n"
+        )
     }
 }
 
@@ -193,6 +220,7 @@ impl ExtrapolatedLoad {
             load: extrapolation.load,
             unit: own[0].unit.clone(),
             band: extrapolation.band,
+            part: own[0].part.clone(),
             finest: loads[loads.len() - 1] / extrapolation.load - 1.0,
             order: extrapolation.order,
             of_cohesion: without_cohesion.map(|without| 1.0 - without / loads[0]),
@@ -200,21 +228,21 @@ impl ExtrapolatedLoad {
     }
 
     fn text(&self) -> String {
-        let Self { name, load, unit, band, .. } = self;
+        let Self { name, load, unit, band, part, .. } = self;
         let column = self.column.as_ref().map_or_else(String::new, |column| format!(", {column}"));
         let side = if self.finest > 0.0 { "too high (the unsafe side)" } else { "too low" };
         let off = 100.0 * self.finest.abs();
         let order = self.order.map_or_else(String::new, |order| format!("; observed order {order:.2}"));
         let of_cohesion = self.of_cohesion.map_or_else(String::new, |part| {
             format!(
-                "The small cohesion carries {:.1} % of the load on the coarsest grid: use cohesion = 0 if it was given for \
-                 stability only.\n",
+                "The small cohesion carries at least {:.1} % of the load (measured on the coarsest grid). Use cohesion = 0 if it was \
+                 given for stability only.\n",
                 100.0 * part
             )
         });
         format!(
-            "Limit load of {name}{column}: {} +- {} {unit}, extrapolated from the two finest grids{order}.\nOn the finest grid it is \
-             {off:.1} % {side}.\n{of_cohesion}",
+            "Limit load of {name}{column}{part}: {} +- {} {unit}, extrapolated from the two finest grids{order}.\nOn the finest grid it is \
+             estimated to be {off:.1} % {side}.\n{of_cohesion}",
             rounded(*load, 4),
             rounded(*band, 2)
         )
@@ -241,7 +269,8 @@ impl Extrapolation {
         let richardson: Vec<f64> = loads.windows(2).map(|pair| 2.0 * pair[1] - pair[0]).collect();
         let last = richardson.len() - 1;
         let load = richardson[last];
-        let off = BAND * (loads[last + 1] - load).abs();
+        let share = if loads[last + 1] < load { BAND_FROM_BELOW } else { BAND };
+        let off = share * (loads[last + 1] - load).abs();
         let moved = last.checked_sub(1).map_or(0.0, |before| (load - richardson[before]).abs());
         let order = loads.len().checked_sub(3).map(|first| {
             let [coarse, middle, fine] = [loads[first], loads[first + 1], loads[first + 2]];

@@ -19,8 +19,9 @@ fn limit_load(scratch: &Scratch, case: &str, settings: &[&str]) -> (String, Valu
         vec!["limit-load", case.to_str().expect("a path"), "-o", output.to_str().expect("a path"), "--force"];
     settings.iter().for_each(|setting| words.extend(["--set", setting]));
     let arguments = LimitLoad::parse_from([&words[..], &["--", program()]].concat()).arguments;
-    let (text, files) = limit_load::run(&arguments, |_| ()).expect("a limit load");
-    assert!(files.iter().all(|file| file.is_file()), "{files:?}");
+    let found = limit_load::run(&arguments, |_| ()).expect("a limit load");
+    let text = found.text;
+    assert!(found.is_reached && found.files.iter().all(|file| file.is_file()), "{text}");
     let json = std::fs::read_to_string(output.join("limit-load.json")).expect("limit-load.json");
     (text, serde_json::from_str(&json).expect("JSON"))
 }
@@ -76,7 +77,8 @@ fn the_part_of_a_small_cohesion_is_measured() {
     let settings = ["material.sand.cohesion=\"0.5 kPa\"", "footing.base=smooth"];
     let (text, found) = limit_load(&scratch, "strip_on_sand", &settings);
     let part = found["loads"][0]["of_cohesion"].as_f64().expect("a part");
-    assert!((0.06..0.16).contains(&part), "{part}");
+    // 12.2 % on the grid of 8 cells.
+    assert!((0.10..0.14).contains(&part), "{part}");
     assert!(text.contains("The small cohesion carries"), "{text}");
 }
 
@@ -108,9 +110,15 @@ fn a_limit_load_is_the_same_on_any_number_of_ranks_and_over_restarts() {
 fn a_load_that_still_grows_is_told() {
     let scratch = Scratch::new();
     let case = shipped("limit_load/strip_on_clay.toml");
-    let short = ["--set", "footing.displacement=[0.0, -0.01]"];
-    let arguments = [&[case.to_str().expect("a path"), "-o", "out"][..], &short].concat();
-    let output = scratch.direct(&arguments).expect(0);
+    let short = "footing.displacement=[0.0, -0.01]";
+    let case = case.to_str().expect("a path");
+    let output = scratch.direct(&[case, "-o", "out", "--set", short]).expect(0);
+    output.says_once("no limit load of footing");
     output.says_once("Increase the prescribed displacement");
-    output.says_once("limit load of footing");
+    let words = ["limit-load", case, "-o", "found", "--set", short, "--", program()];
+    let directory = scratch.path("found");
+    let mut arguments = LimitLoad::parse_from(words).arguments;
+    arguments.options.output = Some(directory);
+    let found = limit_load::run(&arguments, |_| ()).expect("a table");
+    assert!(!found.is_reached && !found.text.contains("extrapolated"), "{}", found.text);
 }

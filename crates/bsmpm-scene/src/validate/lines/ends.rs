@@ -12,10 +12,19 @@ struct Segment<'a> {
     path: Option<&'a MotionPath>,
 }
 
+/// Parts of the shortest cell that count as no motion along a grid line.
+const AT_REST: f64 = 1e-3;
+
+/// Whether a path stays at a grid line across an axis.
+fn stays(case: &Case, path: &MotionPath, axis: usize) -> bool {
+    let least = AT_REST * case.grid.axes[axis].shortest();
+    path.rows.iter().all(|(_, moved)| moved[axis].abs() <= least)
+}
+
 impl Segment<'_> {
     /// Whether it stays where it is along an axis.
-    fn stays(&self, axis: usize) -> bool {
-        self.path.is_none_or(|path| path.rows.iter().all(|(_, moved)| moved[axis] == 0.0))
+    fn stays(&self, case: &Case, axis: usize) -> bool {
+        self.path.is_none_or(|path| stays(case, path, axis))
     }
 
     /// How far it goes, m.
@@ -155,8 +164,13 @@ pub(super) fn corners(case: &Case, found: &mut FoundLine) {
     }
 }
 
-/// Whether a body that does not turn moves along an axis.
-fn moves(rigid: &Rigid, axis: usize) -> bool {
+/// Whether a body that does not turn leaves the grid lines across an axis.
+fn moves(case: &Case, rigid: &Rigid, axis: usize) -> bool {
+    rigid.free[axis] || !stays(case, &rigid.path, axis)
+}
+
+/// Whether a body moves along an axis at all.
+fn pushes(rigid: &Rigid, axis: usize) -> bool {
     rigid.free[axis] || rigid.path.rows.iter().any(|(_, moved)| moved[axis] != 0.0)
 }
 
@@ -165,12 +179,12 @@ fn polygon(case: &Case, rigid: &Rigid, corners: &[[f64; 2]], found: &mut FoundLi
     for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
         let Some(along) = [0, 1].into_iter().find(|axis| from[1 - axis] == to[1 - axis]) else { continue };
         let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
-        if !moves(rigid, along) && has_material(case, flat(middle), 1 - along) {
+        if !moves(case, rigid, along) && has_material(case, flat(middle), 1 - along) {
             corner(case, rigid, &in_plane(along, *from, from[along] - to[along]), found);
             corner(case, rigid, &in_plane(along, *to, to[along] - from[along]), found);
         }
     }
-    for along in [0, 1].into_iter().filter(|along| !moves(rigid, *along) && moves(rigid, 1 - along)) {
+    for along in [0, 1].into_iter().filter(|along| !moves(case, rigid, *along) && pushes(rigid, 1 - along)) {
         for outward in [-1.0, 1.0] {
             widest(case, rigid, (corners, along, outward), found);
         }
@@ -209,7 +223,7 @@ fn cuboid(case: &Case, rigid: &Rigid, lower: [f64; 3], upper: [f64; 3], found: &
             if !over([lower, upper]).any(|place| has_material(case, place, normal)) {
                 continue;
             }
-            let stays = |of: &FaceEnd| !moves(rigid, of.along);
+            let stays = |of: &FaceEnd| !moves(case, rigid, of.along);
             for of in FaceEnd::of_face(normal, lower, upper).filter(stays) {
                 corner(case, rigid, &of, found);
             }
@@ -225,7 +239,7 @@ fn rims(case: &Case, rigid: &Rigid, about: [f64; 2], corners: &[[f64; 2]], found
         let radius = from[0].max(to[0]);
         let has_soil = |[x, y]: [f64; 2]| has_material(case, [x, y, from[1]], 2);
         let is_at = |shift: f64| ring(about, radius + shift * BEYOND * cell).any(has_soil);
-        if moves(rigid, 2) && is_at(-1.0) && is_at(1.0) {
+        if pushes(rigid, 2) && is_at(-1.0) && is_at(1.0) {
             doubt_rim(&format!("rigid `{}`", rigid.name), found);
         }
     }
@@ -255,6 +269,7 @@ fn corner(case: &Case, rigid: &Rigid, of: &FaceEnd, found: &mut FoundLine) {
                  there, by grid.cell or [grid.knots]",
                 NAMES[of.along]
             );
+            found.inside.push(format!("rigid `{name}`"));
             found.doubts.entry(format!("rigid {name}")).or_insert(told);
         }
     }
@@ -278,7 +293,7 @@ fn end(
     let cell = axis.cell(axis.first_cell(|i| axis.breakpoint(i + 1) >= at[along] - axis.lower()).min(axis.cells() - 1));
     match grid_line(case, along, at[along] - axis.lower()) {
         Some(line) if line == 0 || line == axis.cells() => {}
-        Some(line) if segment.stays(along) => {
+        Some(line) if segment.stays(case, along) => {
             found.lines.entry((along, line)).or_insert(reason);
             if segment.path.is_some() {
                 let far = found.held.entry((along, line)).or_default();
@@ -309,6 +324,7 @@ fn end(
                  its length, and its force is high by as much; put a grid line there, by grid.cell or [grid.knots]",
                 NAMES[along], at[along]
             );
+            found.inside.push(name.clone());
             found.doubts.entry(name.clone()).or_insert(told);
         }
     }
@@ -318,7 +334,7 @@ fn end(
 fn wall(case: &Case, segment: &Segment<'_>, normal: usize, found: &mut FoundLine) {
     let axis = &case.grid.axes[normal];
     let place = segment.ends[0][normal];
-    if segment.path.is_none() || !segment.stays(normal) {
+    if segment.path.is_none() || !segment.stays(case, normal) {
         return;
     }
     let Some(line) = grid_line(case, normal, place - axis.lower()).filter(|line| (1..axis.cells()).contains(line))
