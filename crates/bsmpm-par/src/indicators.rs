@@ -222,8 +222,8 @@ fn short(t: f64) -> f64 {
     format!("{t:.9e}").parse().unwrap_or(t)
 }
 
-/// What the soft background takes of the work and of the load, if there is one: over all steps, or where a limit load is
-/// read at the end of the run in the last one.
+/// What the soft background takes of the work and of the load, if there is one: over all steps, or where a limit load
+/// is read at the end of the run in the last one.
 fn of_background(case: &Case, summary: &Summary) -> [Option<(&'static str, Indicator)>; 2] {
     let work = |value: f64, meaning| ("background-work", Indicator::new(value, "-", meaning, [0.0, BACKGROUND]));
     let load = |value: f64, meaning| ("background-load-share", Indicator::new(value, "-", meaning, [0.0, LOAD_SHARE]));

@@ -1,5 +1,5 @@
-//! `bsmpm limit-load`: the load under which the ground fails at what is moved, on the case's own grid and on finer ones,
-//! with Richardson's extrapolation. Runs are made by `crate::batch`, results are set in `report`.
+//! `bsmpm limit-load`: the load under which the ground fails at what is moved, on the case's own grid and on finer
+//! ones, with Richardson's extrapolation. Runs are made by `crate::batch`, results are set in `report`.
 
 use std::path::PathBuf;
 

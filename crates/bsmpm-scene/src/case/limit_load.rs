@@ -10,7 +10,8 @@ pub struct LimitLoad {
     pub stiffness: f64,
     /// Loads of everything that is moved, in the order of the file: the footing, prescribed motions, rigid bodies.
     pub loads: Vec<SoughtLoad>,
-    /// Materials with friction whose cohesion is small against their weight, and may have been given for stability only.
+    /// Materials with friction whose cohesion is small against their weight, and may have been given for stability
+    /// only.
     pub small_cohesions: Vec<String>,
     /// Whether volumetric strains are averaged, as for plastic flow without change of volume.
     pub averages: bool,

@@ -19,8 +19,8 @@ const POINTS: u64 = 2;
 const STEPS: &str = "40";
 /// Energy and force measure of convergence: with a force measure of 1e-3 loads are 2 to 7 % higher.
 const TOLERANCES: [&str; 2] = ["1e-8", "1e-4"];
-/// Coefficient of the background: between 2e-6 and 2e-4 loads differ by up to 0.2 %. 1e-3 is 1 % too high, and below 1e-5
-/// steps are cut for a friction angle of 35 degrees.
+/// Coefficient of the background: between 2e-6 and 2e-4 loads differ by up to 0.2 %. 1e-3 is 1 % too high, and below
+/// 1e-5 steps are cut for a friction angle of 35 degrees.
 const BACKGROUND: &str = "2e-5";
 
 /// Fills in what the purpose stands for, if the case has one; whether anything was.

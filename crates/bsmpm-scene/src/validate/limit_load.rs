@@ -320,8 +320,8 @@ struct Moved {
     width: Option<LoadWidth>,
 }
 
-/// The footing's load: the case's own column of its pressure or force, or one more of the pressure; of a footing that does
-/// not move along its normal the force along its way.
+/// The footing's load: the case's own column of its pressure or force, or one more of the pressure; of a footing that
+/// does not move along its normal the force along its way.
 fn of_footing(case: &mut Case, moved: Moved) -> SoughtLoad {
     let normal = case.footing.as_ref().map_or([0.0; 3], |footing| site::normal_of(footing.site));
     let way = along(&moved.path, 1.0);

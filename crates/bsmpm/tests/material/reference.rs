@@ -88,8 +88,8 @@ fn plastic_increment_is_the_deviatoric_strain_lost() {
     assert!((found.plastic_increment() - exact).abs() <= 1e-14);
 }
 
-/// Shear beyond c = 1 Pa: the stress grows by c (1, 0, -1) in the first step, whose work on the strain is actual, and not
-/// at all in the second one. Elastic ground works 2 mu |strain|^2, mu = 1000/2.6 Pa.
+/// Shear beyond c = 1 Pa: the stress grows by c (1, 0, -1) in the first step, whose work on the strain is actual, and
+/// not at all in the second one. Elastic ground works 2 mu |strain|^2, mu = 1000/2.6 Pa.
 #[test]
 fn second_order_work_is_elastic_until_perfect_flow_leaves_none() {
     let (weak, strong) = (mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1.0), mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1e3));
