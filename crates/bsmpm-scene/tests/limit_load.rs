@@ -99,7 +99,7 @@ fn motions_along_which_no_limit_load_is_found_are_refused() {
         "prescribed.0={ from = [0.0, 2.0], to = [0.0, 3.0], displacement = [0.1, 0.0], components = \"normal\" }";
     refused(CLAY, &[wall], "[boundary] left holds the ground against");
     // What cannot be read is no second error.
-    let errors = read(CLAY, &["footing.displacement=\"down\""]).err().expect("an error");
+    let errors = read(CLAY, &["footing.displacement=\"down\""]).expect_err("an error");
     assert!(errors.iter().all(|error| !error.to_string().contains("nothing moves")), "{errors:#?}");
 }
 
