@@ -309,8 +309,8 @@ fn every_key_renamed_is_unknown_and_every_key_removed_is_missed_if_it_must_be_th
                 continue;
             }
             let removed = without(&base, &written);
-            let is_filled =
-                base.contains("\naccuracy = ") && ["points_per_cell", "order", "method"].contains(&written.of.1);
+            let fills = ["\naccuracy = ", "purpose = "].iter().any(|key| base.contains(key));
+            let is_filled = fills && ["points_per_cell", "order", "method"].contains(&written.of.1);
             match written.presence {
                 Presence::Required if !is_filled => refuses(&removed, &written.path, "missing", None),
                 Presence::Required => {
