@@ -5,7 +5,7 @@ use bsmpm_io::manifest::ManifestLimitLoad;
 use bsmpm_io::table::Columns;
 use bsmpm_scene::{Case, LimitLoad, SoughtLoad};
 
-/// Part of the way from which on the load should not change any more.
+/// Part of the displacement from which on the load should not change any more.
 const LATE: f64 = 0.75;
 /// Relative change since then up to which the limit counts as reached.
 const REACHED: f64 = 0.01;
@@ -25,8 +25,8 @@ pub fn found(case: &Case, history: &Columns) -> Vec<ManifestLimitLoad> {
 fn of_load(sought: &LimitLoad, load: &SoughtLoad, history: &Columns) -> Option<ManifestLimitLoad> {
     let times = history.get("time")?;
     let last = times.len().checked_sub(1)?;
-    let way = |row: usize| load.path.at(times[row]).iter().fold(0.0, |length: f64, along| length.hypot(*along));
-    let late = (0..=last).find(|row| way(*row) >= LATE * way(last))?;
+    let moved = |row: usize| load.path.at(times[row]).iter().fold(0.0, |length: f64, along| length.hypot(*along));
+    let late = (0..=last).find(|row| moved(*row) >= LATE * moved(last))?;
     let at = |row: usize| -> Option<f64> {
         let parts = load.columns.iter().map(|(column, weight)| Some(weight * history.get(column)?.get(row)?));
         parts.sum()
@@ -48,7 +48,7 @@ fn of_load(sought: &LimitLoad, load: &SoughtLoad, history: &Columns) -> Option<M
 }
 
 /// A line on each of them.
-pub fn told(case: &Case, loads: &[ManifestLimitLoad]) -> Vec<String> {
+pub fn report_lines(case: &Case, loads: &[ManifestLimitLoad]) -> Vec<String> {
     let averages = case.limit_load.as_ref().is_some_and(|sought| sought.averages);
     let line = |load: &ManifestLimitLoad| if load.is_reached { reached(load, averages) } else { not_reached(load) };
     loads.iter().map(line).collect()
@@ -80,6 +80,6 @@ fn not_reached(load: &ManifestLimitLoad) -> String {
     let remedy = if *change > 0.0 { "Increase the prescribed displacement." } else { "Increase analysis.steps." };
     format!(
         "warning: no limit load of {name}: its load, {value:.4e} {unit} at the end, changed by {percent:+.1} % over the last quarter \
-         of the way. {remedy}"
+         of the displacement. {remedy}"
     )
 }

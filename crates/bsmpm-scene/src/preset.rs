@@ -106,7 +106,7 @@ struct Choice {
 }
 
 /// Fills in what the document's purpose and `accuracy` stand for, in this order; whether anything was. What cannot be
-/// told from the rest of the case is an error, which says what it would follow from.
+/// derived from the rest of the case is an error, which says what it depends on.
 pub(crate) fn fill(
     document: &mut DocumentTable,
     source: &Source<'_>,
@@ -130,7 +130,7 @@ fn fill_accuracy(
     report: &mut Report<'_>,
 ) -> bool {
     let preset = &Preset::of(accuracy);
-    // Its errors are told when the filled document is read.
+    // Its errors are reported when the filled document is read.
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     if record.word("geometry") == Some(Geometry::Solid) {
         let message = "not available in a solid yet: give cells, points, steps and tolerances";

@@ -71,13 +71,13 @@ fn loads_are_columns_of_the_history() {
     let width = load.width.expect("a width");
     assert_eq!((&*load.name, width.length, width.modelled), ("punch", 2.0, 0.5), "half of it lies beyond the roller");
     assert!((width.cells - 8.0).abs() < 1e-9, "{width:?}");
-    assert_eq!(load.columns, [("punch-load-y".to_owned(), 1.0)], "the soil pushes it up, against its way");
+    assert_eq!(load.columns, [("punch-load-y".to_owned(), 1.0)], "the soil pushes it up, against its motion");
     assert!(matches!(case.histories.last().expect("a history").quantity, Quantity::Rigid { body: 0, .. }));
 }
 
-/// A footing that moves along its base has a force along its way, and a pressure if it moves along its normal.
+/// A footing that moves along its base has a force along its motion, and a pressure if it moves along its normal.
 #[test]
-fn the_load_of_a_footing_that_moves_sideways_is_its_force_along_its_way() {
+fn the_load_of_a_footing_that_moves_sideways_is_its_force_along_its_motion() {
     let case = valid(SAND, &["footing.displacement=[0.03, -0.04]"]);
     let load = &case.limit_load.as_ref().expect("a search").loads[0];
     let columns: Vec<&str> = load.columns.iter().map(|(name, _)| &**name).collect();

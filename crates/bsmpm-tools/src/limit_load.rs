@@ -33,7 +33,7 @@ The first grid is the case's own; each further one has cells half as large. Limi
 an error in proportion to the size of the cells, so the extrapolated load is 2 fine - coarse, of the two finest grids. Its band
 is half of what the finest grid is off (all of it where loads rise as cells shrink), or the difference from the extrapolation
 of the two grids before, whichever is larger. In all verified cases it contains the exact load. Where the load still changes
-by more than 1 % over the last quarter of the way, there is no limit load: nothing is extrapolated.
+by more than 1 % over the last quarter of the displacement, there is no limit load: nothing is extrapolated.
 
 If a material has friction, and a cohesion that is small against its weight, one more run on the coarsest grid without this
 cohesion measures its part of the load, at least.
@@ -68,12 +68,12 @@ pub struct FoundLimitLoads {
     pub is_reached: bool,
 }
 
-/// Finds the loads; `told` gets a line for every run as soon as it is there.
+/// Finds the loads; `say` gets a line for every run as soon as it has ended.
 ///
 /// # Errors
 /// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not
 /// come to its end; those of files.
-pub fn run(arguments: &LimitLoadArguments, mut told: impl FnMut(&str)) -> Result<FoundLimitLoads, Error> {
+pub fn run(arguments: &LimitLoadArguments, mut say: impl FnMut(&str)) -> Result<FoundLimitLoads, Error> {
     let (options, path) = (&arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".limit-load"));
     let bytes = case::load(path)?;
@@ -81,7 +81,7 @@ pub fn run(arguments: &LimitLoadArguments, mut told: impl FnMut(&str)) -> Result
     let batch = options.batch(&command, path, &output)?;
     let outcomes = batch.run(&orders, command::ranks(&command), |index, outcome| {
         let (cell, cpu) = (orders[index].case.grid.shortest(), outcome.cost.cpu_seconds);
-        told(format!("cells of {cell:.4} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason).trim_end());
+        say(format!("cells of {cell:.4} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason).trim_end());
     });
     let grids = arguments.grids as usize;
     for (order, outcome) in orders.iter().zip(&outcomes).take(grids) {
@@ -89,7 +89,7 @@ pub fn run(arguments: &LimitLoadArguments, mut told: impl FnMut(&str)) -> Result
     }
     let without_cohesion = outcomes.get(grids);
     if let Some(outcome) = without_cohesion.filter(|outcome| outcome.state != RunState::Done) {
-        told(&format!("the run without small cohesions did not come to its end: {}", outcome.reason));
+        say(&format!("the run without small cohesions did not come to its end: {}", outcome.reason));
     }
     let without_cohesion = without_cohesion.filter(|outcome| outcome.state == RunState::Done);
     let report = LimitLoadReport::of(&orders[..grids], &outcomes[..grids], without_cohesion)?;

@@ -85,7 +85,7 @@ pub struct ManifestLimitLoad {
     pub unit: String,
     /// At the end of the run.
     pub value: f64,
-    /// (value - value at three quarters of the way) / value.
+    /// (value - value at three quarters of the displacement) / value.
     pub change: f64,
     /// Whether the value is a limit: positive, and with a change of at most 1 %.
     pub is_reached: bool,

@@ -143,7 +143,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             ledger.path().display()
         );
         self.log.line("end", &text);
-        let limit_loads = limit_load::told(&self.case, &ledger.manifest().limit_loads);
+        let limit_loads = limit_load::report_lines(&self.case, &ledger.manifest().limit_loads);
         limit_loads.iter().for_each(|line| self.log.line("limit-load", line));
         if summary.settled_steps > 0 {
             let text = format!(

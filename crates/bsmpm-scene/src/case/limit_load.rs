@@ -26,13 +26,13 @@ pub struct SoughtLoad {
     pub columns: Vec<(String, f64)>,
     /// Unit of the sum.
     pub unit: String,
-    /// Its way, as it is run.
+    /// Its path in the run, divided by the stiffness factor.
     pub path: MotionPath,
     /// Its width at the start; `None` where it has none of its own, as a face of the grid.
     pub width: Option<LoadWidth>,
 }
 
-/// The width of what is moved, across its way.
+/// The width of what is moved, across its direction of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadWidth {
     /// m  of the whole, where a plane of symmetry cuts it

@@ -26,7 +26,7 @@ impl MotionPath {
         between(&rows, Vector::zeros(), t).map_or([0.0; 3], Into::into)
     }
 
-    /// m  the longest way from the start to any of its places
+    /// m  the largest displacement of any row
     pub fn farthest(&self) -> f64 {
         self.rows.iter().map(|(_, moved)| moved[0].hypot(moved[1]).hypot(moved[2])).fold(0.0, f64::max)
     }

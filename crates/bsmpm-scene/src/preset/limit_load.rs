@@ -19,7 +19,7 @@ const POINTS: u64 = 2;
 const STEPS: &str = "40";
 /// Energy and force measure of convergence: with a force measure of 1e-3 loads are 2 to 7 % higher.
 const TOLERANCES: [&str; 2] = ["1e-8", "1e-4"];
-/// Coefficient of the background: between 2e-6 and 2e-4 loads differ by up to 0.2 %. 1e-3 is 1 % too high, and below
+/// Coefficient of the background: between 2e-6 and 2e-4 loads differ by up to 0.2 %. 1e-3 is 1 % too high, and with
 /// 1e-5 steps are cut for a friction angle of 35 degrees.
 const BACKGROUND: &str = "2e-5";
 
@@ -32,7 +32,7 @@ pub(super) fn fill(
     report: &mut Report<'_>,
 ) -> bool {
     let Some((purpose, origin)) = chosen(document) else { return false };
-    // Its errors are told when the filled document is read.
+    // Its errors are reported when the filled document is read.
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     let scene = PresetScene::of(&record);
     let choice = Choice { key: KEY, word: purpose.word(), origin };

@@ -36,7 +36,7 @@ const SHOWN: f64 = 100.0;
 const CROSSED: f64 = 0.25;
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
-/// Adds the lines to a case's grid, tells where and why, and warns of places where none can be. Returns the names of
+/// Adds the lines to a case's grid, notes where and why, and warns of places where none can be. Returns the names of
 /// what ends inside a cell.
 pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -> Vec<String> {
     if case.grid.order == 1 {

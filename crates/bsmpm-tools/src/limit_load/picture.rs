@@ -36,7 +36,7 @@ fn draw_unit(report: &LimitLoadReport, unit: &str, curves: &[ChartCurve]) -> cra
     let loads = report.loads.iter().filter(|load| load.unit == *unit);
     let levels = loads.map(|load| ChartLevel { value: load.load, text: format!("{}, extrapolated", load.name) });
     let below = format!(
-        "stabilisation {}, {} points along each axis of a cell, {} steps; displacements as of the case's own stiffness",
+        "stabilisation {}, {} points along each axis of a cell, {} steps; displacements multiplied by the stiffness factor",
         report.stabilisation, report.points_per_cell[0], report.steps
     );
     let levels: Vec<ChartLevel> = levels.collect();
@@ -67,7 +67,7 @@ fn curves(unit: &str, orders: &[RunOrder], outcomes: &[Outcome]) -> Vec<ChartCur
     curves
 }
 
-/// m and the load's unit: displacement, as of the case's own stiffness, and load of every step.
+/// m and the load's unit: displacement, multiplied by the stiffness factor, and load of every step.
 fn places(load: &SoughtLoad, order: &RunOrder, outcome: &Outcome) -> Vec<(f64, f64)> {
     let Some(history) = &outcome.history else { return Vec::new() };
     let stiffness = order.case.limit_load.as_ref().map_or(1.0, |sought| sought.stiffness);

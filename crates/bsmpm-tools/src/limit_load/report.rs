@@ -27,7 +27,7 @@ pub(super) struct GridLoad {
     pub unit: String,
     /// Column of `history.csv`, if the load is one.
     pub column: Option<String>,
-    /// Over the last quarter of the way, over the load.
+    /// Change over the last quarter of the displacement, over the load.
     pub change: f64,
     pub is_reached: bool,
     /// Which part of the whole a force is of, in words.
@@ -134,7 +134,8 @@ impl LimitLoadReport {
         let unfinished: String = self.grids.iter().filter(|grid| !grid.is_reached).map(GridLoad::doubt).collect();
         let warnings: String = self.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect();
         format!(
-            "{warnings}{}\n{} points along each axis of a cell; stabilisation {}; {} steps; Young's moduli x {} on the first grid\n\n{}\n{found}{unfinished}",
+            "{warnings}{}\n{} points along each axis of a cell; stabilisation {}; {} steps; Young's moduli x {} on the first grid\n\n\
+             {}\n{found}{unfinished}",
             self.title,
             self.points_per_cell[0],
             self.stabilisation,
@@ -201,7 +202,8 @@ impl GridLoad {
         let remedy = if *change > 0.0 { "Increase the prescribed displacement." } else { "Increase analysis.steps." };
         let changed = 100.0 * change;
         format!(
-            "No limit load of {name} with cells of {cell} m: its load changed by {changed:+.1} % over the last quarter of the way. \
+            "No limit load of {name} with cells of {cell} m: its load changed by {changed:+.1} % over the last quarter of the \
+             displacement. \
              {remedy}\n"
         )
     }

@@ -129,13 +129,13 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
     }
 }
 
-/// Tells that a round rim follows no grid line.
+/// Warns that a round rim follows no grid line.
 fn doubt_rim(name: &str, found: &mut FoundLine) {
-    let told = format!(
+    let doubt = format!(
         "{name}: its rim is round and lies inside cells: it pushes what the splines reach, up to a cell more than its radius, \
          and its force is high by as much; compare two cell sizes"
     );
-    found.doubts.insert(name.to_owned(), told);
+    found.doubts.insert(name.to_owned(), doubt);
 }
 
 /// Ends of strips and loaded segments beyond which the surface goes on, and walls with material on both sides.
@@ -152,8 +152,8 @@ pub(super) fn segments(case: &Case, found: &mut FoundLine) {
     }
 }
 
-/// Corners and edges at which faces of rigid bodies along the axes end that soil lies at and goes on beyond, of bodies
-/// that stay at the grid lines there.
+/// Edges (in a plane, corners) of faces of rigid bodies that touch soil, where soil continues beyond the edge and the
+/// body stays at the grid line there.
 pub(super) fn corners(case: &Case, found: &mut FoundLine) {
     for rigid in case.rigid.iter().filter(|rigid| rigid.rotation.is_empty() && !rigid.free[2]) {
         match &rigid.shape {
