@@ -5,8 +5,8 @@ use super::MotionPath;
 /// The search for the load at which the ground fails under what is moved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LimitLoad {
-    /// Factor by which Young's moduli are multiplied, and prescribed displacements divided, so that the geometry stays as
-    /// drawn.
+    /// Factor by which Young's moduli are multiplied, and prescribed displacements divided, so that the geometry stays
+    /// as drawn.
     pub stiffness: f64,
     /// Loads of everything that is moved, in the order of the file: the footing, prescribed motions, rigid bodies.
     pub loads: Vec<SoughtLoad>,

@@ -15,9 +15,9 @@ use crate::words::{AnalysisType, Geometry, Measurement, Purpose, Side, Support, 
 use bsmpm::material::Material;
 use bsmpm::stabilisation::Stabilisation;
 
-/// Part of the smallest cell by which anything moves in the whole run. N_gamma for a friction angle of 25 degrees and 16
-/// cells is 7.840 with 2e-3 and 7.833 with 5e-4, in 2540 and 1119 iterations; at 1 to 4 % of a cell loads grow by 10 to
-/// 30 %.
+/// Part of the smallest cell by which anything moves in the whole run. N_gamma for a friction angle of 25 degrees and
+/// 16 cells is 7.840 with 2e-3 and 7.833 with 5e-4, in 2540 and 1119 iterations; at 1 to 4 % of a cell loads grow by 10
+/// to 30 %.
 const FARTHEST: f64 = 5e-4;
 /// Largest force tolerance: with 1e-3 loads are 2 to 7 % too high.
 const FORCE_TOLERANCE: f64 = 1e-4;
