@@ -127,10 +127,13 @@ pub fn answers<K: Kinematics<D>, const D: usize>(
     let kept = |p: usize, row: Option<&mut [f64]>| match trial.respond(model, points, p) {
         Ok(response) => {
             row.into_iter().for_each(|row| response.advance(row));
-            let strain = if asks { trial.strain(model, points, p) } else { None };
-            let works = |strain| response.second_order_works(&strain, points.gap_of(p));
-            let second_order_works = strain.map(works).unwrap_or_default();
-            Answer { second_order_works, ..Answer::of(&response, points.gap_of(p)) }
+            let gap = points.gap_of(p);
+            let mut answer = Answer::of(&response, gap);
+            if asks {
+                answer.second_order_works =
+                    response.second_order_works(&trial.first_order_strain(model, points, p), gap);
+            }
+            answer
         }
         Err(source) => {
             let mut refused = refused.lock().expect("no thread panicked");

@@ -125,19 +125,30 @@ impl<const D: usize> Extension<D> {
         Some(extension)
     }
 
+    /// All ties that concern the window, ascending by number.
+    pub fn ties(&self) -> &[Tie<D>] {
+        &self.ties
+    }
+
     /// The tie of a node of the window.
     #[inline]
     pub fn tie_of(&self, node: usize) -> Option<&Tie<D>> {
-        self.of_node[node].checked_sub(1).map(|place| &self.ties[place as usize])
+        self.place_of(node).map(|place| &self.ties[place])
     }
 
-    /// The tie of a node by its number in the whole grid.
-    pub fn tie_of_number(&self, number: usize) -> Option<&Tie<D>> {
-        self.ties.binary_search_by_key(&number, |tie| tie.number).ok().map(|place| &self.ties[place])
+    /// Place among [`Extension::ties`] of the tie of a node of the window.
+    #[inline]
+    pub fn place_of(&self, node: usize) -> Option<usize> {
+        self.of_node[node].checked_sub(1).map(|place| place as usize)
+    }
+
+    /// The same of a node by its number in the whole grid.
+    pub fn place_of_number(&self, number: usize) -> Option<usize> {
+        self.ties.binary_search_by_key(&number, |tie| tie.number).ok()
     }
 
     /// Whether a component (place in a nodal array) is tied.
-    pub fn ties(&self, component: usize) -> bool {
+    pub fn is_tied(&self, component: usize) -> bool {
         let (node, axis) = Nodal::<D>::split(component);
         self.tie_of(node).is_some_and(|tie| tie.tied[axis])
     }

@@ -212,7 +212,7 @@ impl<const D: usize> Nodes<D> {
     pub fn movable(&self) -> Vec<bool> {
         let mut movable = self.contacts.movable(&self.free);
         if let Some(extension) = &self.extension {
-            movable.iter_mut().enumerate().for_each(|(component, movable)| *movable |= extension.ties(component));
+            movable.iter_mut().enumerate().for_each(|(component, movable)| *movable |= extension.is_tied(component));
         }
         movable
     }

@@ -18,11 +18,9 @@ use crate::error::SolveError;
 use crate::grid::Grid;
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
-use crate::step::extension::Extension;
+use crate::step::extension::{Extension, InnerFunction, Tie};
+use crate::tensor::{Square, Vector};
 use std::collections::BTreeMap;
-
-/// Numbers of two nodes in the whole grid: row and column of a block.
-type NodePair = [usize; 2];
 
 /// A linear system behind which there is one of the inner functions alone.
 pub struct ReducedSystem<'a, const D: usize> {
@@ -31,11 +29,31 @@ pub struct ReducedSystem<'a, const D: usize> {
     grid: &'a Grid<D>,
     halo: &'a dyn Halo,
     offsets: Vec<usize>,
-    blocks: BTreeMap<NodePair, ColumnSums>,
+    kept: Vec<KeptBlocks<D>>, // of every tie
 }
 
-/// D x D blocks by the column of cells that they come from, which is the layer of the lowest node of the sum.
-type ColumnSums = BTreeMap<usize, Vec<f64>>;
+/// Entries of a tied node and others.
+#[derive(Clone, Debug, Default)]
+struct KeptBlocks<const D: usize> {
+    /// K_Jm of the tied node J and any node m
+    row: Blocks<D>,
+    /// K_iJ of any node i that is not tied
+    column: Blocks<D>,
+}
+
+type Blocks<const D: usize> = BTreeMap<BlockOrigin, Square<D>>;
+
+/// The other node of a block, and where it comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct BlockOrigin {
+    /// number in the whole grid
+    other: usize,
+    /// column of cells: the layer of the lowest node of the sum
+    cells: usize,
+}
+
+/// Numbers of two nodes in the whole grid: row and column of a block.
+type NodePair = [usize; 2];
 
 impl<'a, const D: usize> ReducedSystem<'a, D> {
     /// In front of a `solver` for the window of a grid.
@@ -45,105 +63,105 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         grid: &'a Grid<D>,
         halo: &'a dyn Halo,
     ) -> Self {
-        Self { solver, extension, grid, halo, offsets: grid.offsets(), blocks: BTreeMap::new() }
+        Self { solver, extension, grid, halo, offsets: grid.offsets(), kept: Vec::new() }
     }
 
     /// Keeps the entries of a dense block that have a tied row or column.
     fn keep(&mut self, nodes: &[usize], block: &[f64]) {
-        let ties = |node: usize| self.extension.tie_of(node).is_some();
-        let is_tied: Vec<bool> = nodes.iter().map(|&node| ties(node)).collect();
-        if !is_tied.contains(&true) {
-            return;
-        }
-        let column = self.grid.node_at(nodes[0])[0];
+        let ties: Vec<Option<usize>> = nodes.iter().map(|&node| self.extension.place_of(node)).collect();
+        let cells = self.grid.node_at(nodes[0])[0];
+        let origins: Vec<BlockOrigin> =
+            nodes.iter().map(|&node| BlockOrigin { other: self.grid.number_of(node), cells }).collect();
         let order = nodes.len() * D;
-        for (a, &row) in nodes.iter().enumerate() {
-            for (b, &other) in nodes.iter().enumerate().filter(|(b, _)| is_tied[a] || is_tied[*b]) {
-                let pair = [self.grid.number_of(row), self.grid.number_of(other)];
-                let sums = self.blocks.entry(pair).or_default().entry(column).or_insert_with(|| vec![0.0; D * D]);
-                for i in 0..D {
-                    let entries = &block[(a * D + i) * order + b * D..][..D];
-                    sums[i * D..(i + 1) * D].iter_mut().zip(entries).for_each(|(sum, entry)| *sum += entry);
-                }
+        for (a, &row) in ties.iter().enumerate() {
+            for (b, &column) in ties.iter().enumerate() {
+                let sums = match (row, column) {
+                    (Some(tie), _) => self.kept[tie].row.entry(origins[b]),
+                    (None, Some(tie)) => self.kept[tie].column.entry(origins[a]),
+                    (None, None) => continue,
+                };
+                *sums.or_insert_with(Square::zeros) += Square::from_fn(|i, j| block[(a * D + i) * order + b * D + j]);
             }
         }
     }
 
-    /// The kept blocks, each summed over the columns of cells of all ranks. One gathering where ties are published.
-    fn complete_blocks(&mut self) -> BTreeMap<NodePair, Vec<f64>> {
-        let mut kept = std::mem::take(&mut self.blocks);
+    /// Completes the blocks of published ties by those of other ranks. One gathering.
+    fn exchange(&self, kept: &mut [KeptBlocks<D>]) {
+        let extension = self.extension;
+        let tie_at = |number: usize| extension.place_of_number(number).map(|place| &extension.ties()[place]);
+        let is_own = |origin: &BlockOrigin| tie_at(origin.other).is_some_and(|tie| !tie.is_published);
+        let mut message = Vec::new();
+        for (tie, blocks) in extension.ties().iter().zip(&mut *kept).filter(|(tie, _)| tie.is_published) {
+            for (part, blocks) in [&mut blocks.row, &mut blocks.column].into_iter().enumerate() {
+                for (origin, block) in blocks.iter().filter(|(origin, _)| !is_own(origin)) {
+                    message.extend([tie.number, part, origin.other, origin.cells].map(|number| number as f64));
+                    message.extend_from_slice(block.as_slice());
+                }
+                blocks.retain(|origin, _| is_own(origin));
+            }
+        }
+        for item in self.halo.gather(&message).chunks_exact(4 + D * D) {
+            let [tie, part, other, cells] = [0, 1, 2, 3].map(|at| item[at] as usize);
+            let Some(place) = extension.place_of_number(tie) else { continue };
+            let blocks = if part == 0 { &mut kept[place].row } else { &mut kept[place].column };
+            *blocks.entry(BlockOrigin { other, cells }).or_insert_with(Square::zeros) +=
+                Square::from_column_slice(&item[4..]);
+        }
+    }
+
+    /// The blocks that the kept ones add between inner functions: E^T K_Jm E_m of every tied row J, and K_iJ E_J of
+    /// every tied column.
+    fn carried_blocks(&mut self) -> BTreeMap<NodePair, Square<D>> {
+        let mut kept = std::mem::take(&mut self.kept);
         if self.extension.is_published() {
-            let is_own = |number: usize| self.extension.tie_of_number(number).is_some_and(|tie| !tie.is_published);
-            let (mut message, mut own) = (Vec::new(), BTreeMap::new());
-            for (pair, sums) in kept {
-                if pair.iter().any(|&number| is_own(number)) {
-                    own.insert(pair, sums);
-                    continue;
-                }
-                for (column, block) in sums {
-                    message.extend([pair[0] as f64, pair[1] as f64, column as f64]);
-                    message.extend_from_slice(&block);
-                }
-            }
-            kept = own;
-            for item in self.halo.gather(&message).chunks_exact(3 + D * D) {
-                let (pair, column) = ([item[0] as usize, item[1] as usize], item[2] as usize);
-                let sums = kept.entry(pair).or_default().entry(column).or_insert_with(|| vec![0.0; D * D]);
-                sums.iter_mut().zip(&item[3..]).for_each(|(sum, entry)| *sum += entry);
-            }
+            self.exchange(&mut kept);
         }
-        let total = |sums: ColumnSums| {
-            let mut total = vec![0.0; D * D];
-            for block in sums.into_values() {
-                total.iter_mut().zip(block).for_each(|(sum, entry)| *sum += entry);
+        let mut carried: BTreeMap<NodePair, Square<D>> = BTreeMap::new();
+        for (tie, blocks) in self.extension.ties().iter().zip(kept) {
+            let mut row: BTreeMap<usize, Square<D>> = BTreeMap::new();
+            for (other, block) in sums_over_cells(blocks.row) {
+                let Some(place) = self.extension.place_of_number(other) else {
+                    *row.entry(other).or_insert_with(Square::zeros) += block;
+                    continue;
+                };
+                let other = &self.extension.ties()[place];
+                for inner in &other.inner {
+                    *row.entry(inner.number).or_insert_with(Square::zeros) += block * weights(other, inner);
+                }
             }
-            total
-        };
-        kept.into_iter().map(|(pair, sums)| (pair, total(sums))).collect()
-    }
-
-    /// Functions that carry a node's function, with their weights by component: its home's, or itself.
-    fn carriers(&self, number: usize) -> Vec<(usize, [f64; D])> {
-        let Some(tie) = self.extension.tie_of_number(number) else { return vec![(number, [1.0; D])] };
-        let weights = |weight: f64| std::array::from_fn(|i| if tie.tied[i] { weight } else { 0.0 });
-        tie.inner.iter().map(|inner| (inner.number, weights(inner.weight))).collect()
-    }
-
-    /// The blocks that the kept ones add between carriers.
-    fn carried_blocks(&mut self) -> BTreeMap<NodePair, Vec<f64>> {
-        let mut carried: BTreeMap<NodePair, Vec<f64>> = BTreeMap::new();
-        for ([row, column], block) in self.complete_blocks() {
-            let columns = self.carriers(column);
-            for (row, row_weights) in self.carriers(row) {
-                for (column, column_weights) in &columns {
-                    let sums = carried.entry([row, *column]).or_insert_with(|| vec![0.0; D * D]);
-                    for (at, sum) in sums.iter_mut().enumerate() {
-                        *sum += row_weights[at / D] * block[at] * column_weights[at % D];
-                    }
+            for (column, block) in row {
+                for inner in &tie.inner {
+                    *carried.entry([inner.number, column]).or_insert_with(Square::zeros) += weights(tie, inner) * block;
+                }
+            }
+            for (row, block) in sums_over_cells(blocks.column) {
+                for inner in &tie.inner {
+                    *carried.entry([row, inner.number]).or_insert_with(Square::zeros) += block * weights(tie, inner);
                 }
             }
         }
         carried
     }
 
-    /// Adds E^T K E - K_II to the solver's matrix, every entry on one rank.
+    /// Adds E^T K E - K_II to the solver's matrix, every entry on one rank. The blocks of patches are square, so that each
+    /// pair of nodes has the block of either order.
     fn add_carried_blocks(&mut self) {
         let mut diagonal = vec![0.0; self.grid.nodes() * D];
-        for ([row, column], block) in self.carried_blocks() {
-            let nodes = [row, column].map(|number| self.grid.node_of_number(number));
-            if !self.couples(row, column) {
-                let lumped: [f64; D] =
-                    std::array::from_fn(|i| 0.5 * (0..D).map(|j| block[i * D + j].abs()).sum::<f64>());
-                let across: [f64; D] =
-                    std::array::from_fn(|j| 0.5 * (0..D).map(|i| block[i * D + j].abs()).sum::<f64>());
-                for (node, lumped) in nodes.into_iter().zip([lumped, across]) {
-                    let Some(node) = node else { continue };
-                    diagonal[Nodal::<D>::of(node)].iter_mut().zip(lumped).for_each(|(sum, part)| *sum += part);
+        let carried = self.carried_blocks();
+        for ([first, second], block) in carried.iter().filter(|([first, second], _)| first <= second) {
+            let nodes = [*first, *second].map(|number| self.grid.node_of_number(number));
+            let mirror = &carried[&[*second, *first]];
+            if !self.couples(*first, *second) {
+                for (block, nodes) in [(block, nodes), (mirror, [nodes[1], nodes[0]])] {
+                    add_lumped(block, nodes, &mut diagonal);
                 }
                 continue;
             }
-            if let ([Some(row), Some(column)], true) = (nodes, self.owns_lowest(row, column)) {
-                self.add_block(row, column, &block);
+            let ([Some(row), Some(column)], true) = (nodes, self.owns_lowest(*first, *second)) else { continue };
+            if row == column {
+                self.solver.add_among(&[row], block.transpose().as_slice());
+            } else {
+                self.add_pair([row, column], [block, mirror]);
             }
         }
         self.solver.add_diagonal(&diagonal);
@@ -163,37 +181,65 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         self.grid.node_index(&lowest).is_some_and(|node| self.halo.owned().contains(node))
     }
 
-    fn add_block(&mut self, row: usize, column: usize, block: &[f64]) {
-        if row == column {
-            self.solver.add_among(&[row], block);
-            return;
-        }
-        let mut nodes = [row, column];
-        nodes.sort_unstable();
-        let [from, to] = [row, column].map(|node| usize::from(node == nodes[1]));
+    /// Adds the blocks of two nodes: of the first and the second, and of the second and the first.
+    fn add_pair(&mut self, nodes: [usize; 2], blocks: [&Square<D>; 2]) {
         let mut pair = vec![0.0; 4 * D * D];
         for i in 0..D {
-            let start = (from * D + i) * 2 * D + to * D;
-            pair[start..start + D].copy_from_slice(&block[i * D..(i + 1) * D]);
+            for j in 0..D {
+                pair[i * 2 * D + D + j] = blocks[0][(i, j)];
+                pair[(D + i) * 2 * D + j] = blocks[1][(i, j)];
+            }
         }
         self.solver.add_among(&nodes, &pair);
     }
 }
 
+/// Adds half the absolute values of a block to the diagonals of its row's and its column's node, where they are in the
+/// window.
+fn add_lumped<const D: usize>(block: &Square<D>, nodes: [Option<usize>; 2], diagonal: &mut [f64]) {
+    let absolute = block.abs() * 0.5;
+    let lumped = [absolute.column_sum(), absolute.row_sum().transpose()];
+    for (node, lumped) in nodes.into_iter().zip(lumped) {
+        let Some(node) = node else { continue };
+        diagonal[Nodal::<D>::of(node)].iter_mut().zip(&lumped).for_each(|(sum, part)| *sum += part);
+    }
+}
+
+/// The blocks of each other node, summed over the columns of cells in their order.
+fn sums_over_cells<const D: usize>(blocks: Blocks<D>) -> Vec<(usize, Square<D>)> {
+    let mut sums: Vec<(usize, Square<D>)> = Vec::new();
+    for (origin, block) in blocks {
+        match sums.last_mut().filter(|(other, _)| *other == origin.other) {
+            Some((_, sum)) => *sum += block,
+            None => sums.push((origin.other, block)),
+        }
+    }
+    sums
+}
+
+/// e_ij of the tied components, 0 of the others: a diagonal matrix.
+fn weights<const D: usize>(tie: &Tie<D>, inner: &InnerFunction) -> Square<D> {
+    Square::from_diagonal(&Vector::from_fn(|i, _| if tie.tied[i] { inner.weight } else { 0.0 }))
+}
+
 impl<const D: usize> LinearSolver for ReducedSystem<'_, D> {
     fn begin(&mut self, free: &[bool]) {
-        self.blocks.clear();
+        self.kept = vec![KeptBlocks::default(); self.extension.ties().len()];
         self.solver.begin(free);
     }
 
     fn add(&mut self, first_node: usize, block: &[f64]) {
-        let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
-        self.keep(&nodes, block);
+        let nodes = self.offsets.iter().map(|offset| first_node + offset);
+        if nodes.clone().any(|node| self.extension.place_of(node).is_some()) {
+            self.keep(&nodes.collect::<Vec<usize>>(), block);
+        }
         self.solver.add(first_node, block);
     }
 
     fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        self.keep(nodes, block);
+        if nodes.iter().any(|&node| self.extension.place_of(node).is_some()) {
+            self.keep(nodes, block);
+        }
         self.solver.add_among(nodes, block);
     }
 

@@ -222,10 +222,22 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     }
 
     /// Hencky strain of point `p` in the step: `½ ln dF-bar dF-bar^T`; none of a point that inverted.
-    pub(crate) fn strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Symmetric> {
-        let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
-        let strained = K::push_forward(&dF_bar, &Symmetric::IDENTITY);
+    fn strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Symmetric> {
+        let strained = self.strained(model, points, p);
         Some(Response::elastic(&strained, (0.0, 0.0)).ok()?.trial_strain())
+    }
+
+    /// The same to first order, without an eigenvalue problem: `½ (dF-bar dF-bar^T - I)`.
+    pub(crate) fn first_order_strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Symmetric {
+        let mut strain = self.strained(model, points, p);
+        strain.0[..3].iter_mut().for_each(|stretch| *stretch -= 1.0);
+        strain.scaled(0.5)
+    }
+
+    /// dF-bar dF-bar^T of point `p`.
+    fn strained(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Symmetric {
+        let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
+        K::push_forward(&dF_bar, &Symmetric::IDENTITY)
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.

@@ -73,7 +73,7 @@ fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
     let (constant, slope) = (random.vector(), std::array::from_fn(|_| random.vector()));
     let expected = affine(grid, &constant, &slope);
     let inner = |u: &[f64]| -> Vec<f64> {
-        u.iter().enumerate().map(|(at, u)| if extension.ties(at) { 0.0 } else { *u }).collect()
+        u.iter().enumerate().map(|(at, u)| if extension.is_tied(at) { 0.0 } else { *u }).collect()
     };
     let mut u = inner(&expected);
     extension.extend(grid, &mut u, &halo);
@@ -87,7 +87,7 @@ fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
     let work = work_of(&reduced, &v);
     extension.extend(grid, &mut v, &halo);
     assert!((work_of(&force, &v) / work - 1.0).abs() <= 1e-12, "the work of E^T f on u_I is that of f on E u_I");
-    assert!((0..u.len()).all(|at| !extension.ties(at) || reduced[at] == 0.0));
+    assert!((0..u.len()).all(|at| !extension.is_tied(at) || reduced[at] == 0.0));
 }
 
 #[test]
