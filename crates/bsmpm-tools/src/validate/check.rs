@@ -153,8 +153,8 @@ impl MatrixRow {
 
 impl MeasuredOrder {
     fn check(&self) -> Result<(), String> {
-        if self.runs.len() != self.sizes.len() || self.runs.len() < 3 {
-            return Err(format!("{} runs need as many sizes, at least 3", self.runs.len()));
+        if self.runs.len() != self.sizes.len() || self.runs.len() < 2 {
+            return Err(format!("{} runs need as many sizes, at least 2", self.runs.len()));
         }
         if self.column.is_some() == self.kink.is_some() || (self.kink.is_some() && self.at.is_some()) {
             return Err("one of column, at a time if at is given, and kink is needed".into());

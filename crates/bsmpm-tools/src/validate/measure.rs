@@ -164,10 +164,17 @@ fn observed_order(order: &MeasuredOrder, values: &[f64]) -> Result<MeasuredNumbe
     Ok(MeasuredNumber { value: line.slope, remark: Some(remark) })
 }
 
-/// Richardson's limit of the last three sizes, which must shrink by one ratio, with the order that they show.
+/// Richardson's limit: of the last three sizes, which must shrink by one ratio, with the order that they show; of two
+/// sizes with order one, as for limit loads.
 fn extrapolated(order: &MeasuredOrder, values: &[f64]) -> Result<MeasuredNumber, String> {
+    if let ([coarse, fine], [wide, narrow]) = (values, &order.sizes[..]) {
+        return Ok(MeasuredNumber {
+            value: fine + (fine - coarse) / (wide / narrow - 1.0),
+            remark: Some(format!("from {coarse:.4}, {fine:.4}: order 1 assumed")),
+        });
+    }
     let ([.., a, b, c], [.., x, y, z]) = (values, &order.sizes[..]) else {
-        return Err("an extrapolation needs three sizes".into());
+        return Err("an extrapolation needs two or three sizes".into());
     };
     if ((x / y) / (y / z) - 1.0).abs() > 1e-6 {
         return Err("the sizes do not shrink by one ratio".into());
@@ -202,5 +209,13 @@ mod tests {
         let limit = extrapolated(&order(&sizes, None), &values).unwrap().value;
         assert!((limit - 5.0).abs() < 1e-12);
         assert!(extrapolated(&order(&sizes, None), &[1.0, 2.0, 4.0]).is_err());
+    }
+
+    #[test]
+    fn the_limit_of_two_sizes_is_that_of_order_one() {
+        let sizes = [0.5, 0.125];
+        let values = sizes.map(|h| 5.0 + 3.0 * h);
+        let limit = extrapolated(&order(&sizes, None), &values).unwrap().value;
+        assert!((limit - 5.0).abs() < 1e-12);
     }
 }
