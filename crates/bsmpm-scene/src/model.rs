@@ -92,7 +92,7 @@ fn damping(materials: &[NamedMaterial]) -> Vec<f64> {
 }
 
 /// The grid of a case.
-fn grid<const D: usize>(case: &Case) -> Result<Grid<D>, GridError> {
+pub(crate) fn grid<const D: usize>(case: &Case) -> Result<Grid<D>, GridError> {
     let order = case.grid.order;
     let knots = |axis: usize| match &case.grid.axes[axis] {
         GridAxis::Uniform { cell, cells, .. } if case.grid.lines[axis].is_empty() => {

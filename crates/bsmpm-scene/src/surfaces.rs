@@ -1,5 +1,7 @@
 //! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
+mod transition;
+
 use crate::case::{Triangle, keeps_direction};
 use crate::grid::vector;
 use crate::{Acting, Base, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Shares, Site};
@@ -40,6 +42,7 @@ pub fn strips<K: Kinematics<D>, const D: usize>(
             normal: (base == Base::Smooth && contact.is_none()).then_some(normal),
             contact,
             path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, vector(*moved))).collect() },
+            transitions: std::collections::BTreeMap::new(),
             penalty: if contact.is_some() { RUBBING * penalty } else { penalty },
         }
     };
@@ -55,7 +58,9 @@ pub fn strips<K: Kinematics<D>, const D: usize>(
     let prescribed = case.prescribed.iter().map(|of| strip(&of.site, &of.path, (of.base, rubs(of.contact))));
     let acts = |number: usize| case.acts_since(Acting::Strip(number), t).is_some();
     let held = |(number, strip): (usize, Strip<D>)| if acts(number) { strip } else { Strip { penalty: 0.0, ..strip } };
-    footing.chain(prescribed).enumerate().map(held).collect()
+    let mut strips: Vec<Strip<D>> = footing.chain(prescribed).enumerate().map(held).collect();
+    transition::connect(&mut strips, grid);
+    strips
 }
 
 /// The strip that holds a face of the grid, if any.

@@ -12,6 +12,7 @@ mod limit_load;
 mod lines;
 mod load;
 mod material;
+mod meeting;
 mod output;
 mod physics;
 mod place;
@@ -159,6 +160,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     let inside_cells = lines::place(&mut case, record, report);
     solver::fit_weights(&mut case, record, report);
     limit_load::complete(&mut case, record, limit_load::Preparation { stiffness, inside_cells }, report);
+    meeting::check(&case, record, report);
     material::band::check(&case, record, report);
     physics::check(&case, record, report);
     lasting::check(&case, record, report);

@@ -14,7 +14,7 @@ pub use anchor::Idle;
 pub use coulomb::{Contact, ContactReport};
 pub use load::Load;
 pub use rigid::{RigidBody, RigidReport, RigidState};
-pub use strip::{Path, Strip, StripContact, StripReport};
+pub use strip::{MotionShare, Path, Strip, StripContact, StripReport};
 pub use surface::{Anchors, Surface, SurfacePoint};
 
 use crate::exact::Exact;

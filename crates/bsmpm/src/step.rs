@@ -105,8 +105,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     }
     let account = draft.map(|draft| draft.close(model, points, &surface, halo));
     let places = surface.anchors.places((&model.boundary, &model.grid), points.anchored(), halo);
-    for (number, strip) in model.boundary.strips.iter().enumerate() {
-        report.strips[number].left_behind = places.left_behind(number, strip, t + dt, &model.grid);
+    let strips = &model.boundary.strips;
+    for number in 0..strips.len() {
+        report.strips[number].left_behind = places.left_behind(number, strips, t + dt, &model.grid);
     }
     surface.position = places.loads;
     free_field.settle(&mut surface.held);

@@ -19,6 +19,7 @@ mod laws;
 mod lifts_on_soft_ground;
 mod limit_load;
 mod lock;
+mod meeting_motions;
 mod memory;
 mod open_faces;
 mod outputs;

@@ -4,7 +4,7 @@
 //! Points that moved with the nodes instead would lag behind where rows of cells empty: on a column compressed by 30 %
 //! a load would come to lie .013 m of .70 m below the surface. And it tells where a strip has let go of its material.
 
-use super::strip::{Strip, reduce};
+use super::strip::{Strip, displacement, reduce};
 use super::surface::{Anchors, SurfacePoint};
 use super::{Boundary, Support};
 use crate::grid::Grid;
@@ -178,18 +178,20 @@ impl<const D: usize> AnchorPlaces<D> {
     /// Points of a strip, `number` of all, that at time `t` are farther ahead of the material that they held at the
     /// start than half the shortest edge of the cell that they are in, along the strip's whole motion as far as it is
     /// held.
-    pub fn left_behind(&self, number: usize, strip: &Strip<D>, t: f64, grid: &Grid<D>) -> usize {
+    pub fn left_behind(&self, number: usize, strips: &[Strip<D>], t: f64, grid: &Grid<D>) -> usize {
+        let strip = &strips[number];
         let moved = strip.path.at(t);
         let normal = strip.normal.or(strip.contact.map(|contact| contact.inward));
         let held = normal.map_or(moved, |normal| normal * normal.dot(&moved));
         let Some(ahead) = held.try_normalize(0.0).filter(|_| strip.acts() && !strip.lifts()) else { return 0 };
         let reach =
             |x: &Vector<D>| 0.5 * grid.locate(x).map_or(grid.smallest_edge(), |cell| grid.cell_box(&cell).1.min());
-        let lags = |(point, place): &(&super::SurfacePoint<D>, &Vector<D>)| {
-            let x = point.x + moved;
+        let held = self.strips.get(number).map_or(&[][..], Vec::as_slice);
+        let lags = |(at, place): &(usize, &Vector<D>)| {
+            let x = strip.points[*at].x + displacement(strips, number, *at, t);
             (x - **place).dot(&ahead) > reach(&x)
         };
-        strip.points.iter().zip(self.strips.get(number).map_or(&[][..], Vec::as_slice)).filter(lags).count()
+        held.iter().enumerate().filter(lags).count()
     }
 }
 

@@ -4,6 +4,15 @@
 //! Here the traction of the last step is carried on, as a multiplier: p = p(t) + beta (motion - sum N u). What has
 //! slipped in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral, unless the
 //! strip has a [contact](StripContact).
+//!
+//! # Strips that meet
+//!
+//! Where two strips meet and move differently, a continuous displacement cannot follow both. There the prescribed motion
+//! is the spline function sum_I N_I(x) U_I, whose coefficient U_I is the motion of the strip that is nearer to the node of
+//! N_I (its Greville point), and the mean of both where they are equally near. Splines can follow it exactly: a motion
+//! that they cannot follow would be resisted by tractions that grow in every step. A point of one strip then follows
+//! the motions of both in parts ([`MotionShare`]), and its force counts for both in the same parts. So the force of a
+//! strip is the one that does work on its motion: the sum of forces at its nodes.
 
 mod grip;
 mod point;
@@ -20,7 +29,7 @@ use crate::schedule::between;
 use crate::tensor::Vector;
 use grip::ContactState;
 use point::{LENGTHS, StripPoint, StripSums, contact_report};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A displacement as a function of time, linear between its rows: a cut step follows the same path.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,8 +57,19 @@ pub struct Strip<const D: usize> {
     pub contact: Option<StripContact<D>>,
     /// its motion
     pub path: Path<D>,
+    /// by number of a point: parts of other strips' motions in its own, see [the module](self)
+    pub transitions: BTreeMap<usize, Vec<MotionShare>>,
     /// Pa/m  penalty beta; 0: it holds nothing
     pub penalty: f64,
+}
+
+/// Part of another strip's motion in that of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionShare {
+    /// number of the other strip
+    pub strip: usize,
+    /// its part, at most 1 with all others
+    pub share: f64,
 }
 
 impl<const D: usize> Strip<D> {
@@ -63,29 +83,58 @@ impl<const D: usize> Strip<D> {
         self.contact.is_some_and(|contact| contact.law.lifts)
     }
 
-    /// N  its force on the body by component, and N m  the moment of it about the middle of the strip in the plane of
-    /// the axes 0 and 1, counter-clockwise, of what its points carry.
-    fn force(&self, carried: &[Vector<D>]) -> (Vector<D>, f64) {
+    /// m  of its points
+    fn middle(&self) -> Vector<D> {
         let area: f64 = self.points.iter().map(|point| point.area).sum();
-        let middle = self.points.iter().fold(Vector::<D>::zeros(), |sum, point| sum + point.x * point.area) / area;
-        let (mut force, mut moment) = (Vector::zeros(), 0.0);
-        for (point, carried) in self.points.iter().zip(carried) {
-            let share = self.contact.map_or(*carried, |contact| contact.acting(carried)) * point.area;
-            let arm = point.x - middle;
-            force += share;
-            moment += arm[0] * share[1] - arm[1] * share[0];
-        }
-        (force, moment)
+        self.points.iter().fold(Vector::<D>::zeros(), |sum, point| sum + point.x * point.area) / area
     }
+
+    /// The strips whose motions a point of this strip, `number` of all, follows, with their parts: this one first.
+    fn motions(&self, number: usize, point: usize) -> impl Iterator<Item = MotionShare> + '_ {
+        let others = self.transitions.get(&point).map_or(&[][..], Vec::as_slice);
+        let own = 1.0 - others.iter().map(|other| other.share).sum::<f64>();
+        std::iter::once(MotionShare { strip: number, share: own }).chain(others.iter().copied())
+    }
+}
+
+/// Displacement of a point of strip `number` at time `t`, m.
+pub fn displacement<const D: usize>(strips: &[Strip<D>], number: usize, point: usize, t: f64) -> Vector<D> {
+    let motions = strips[number].motions(number, point);
+    motions.fold(Vector::zeros(), |sum, motion| sum + strips[motion.strip].path.at(t) * motion.share)
+}
+
+/// Force of a strip on the body.
+#[derive(Clone, Copy, Debug)]
+struct Resultant<const D: usize> {
+    force: Vector<D>, // N
+    moment: f64,      // N m  about the strip's middle in the plane of the axes 0 and 1, counter-clockwise
+}
+
+/// Forces of all strips on the body, of what their points carry. The force at a point belongs to the strips whose motions
+/// it follows, by the same parts, so that force times motion is the work.
+fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -> Vec<Resultant<D>> {
+    let middles: Vec<Vector<D>> = strips.iter().map(Strip::middle).collect();
+    let mut resultants = vec![Resultant { force: Vector::zeros(), moment: 0.0 }; strips.len()];
+    for (number, strip) in strips.iter().enumerate() {
+        for (at, (point, carried)) in strip.points.iter().zip(&carried[number]).enumerate() {
+            let acting = strip.contact.map_or(*carried, |contact| contact.acting(carried)) * point.area;
+            for MotionShare { strip, share } in strip.motions(number, at) {
+                let (force, arm) = (acting * share, point.x - middles[strip]);
+                resultants[strip].force += force;
+                resultants[strip].moment += arm[0] * force[1] - arm[1] * force[0];
+            }
+        }
+    }
+    resultants
 }
 
 /// Nodes of the window whose functions reach a point of a strip at time `t`.
 pub fn nodes_at<const D: usize>(strips: &[Strip<D>], grid: &Grid<D>, t: f64) -> BTreeSet<usize> {
     let mut nodes = BTreeSet::new();
-    for strip in strips.iter().filter(|strip| strip.acts()) {
-        let place = strip.path.at(t);
-        let cells: BTreeSet<[usize; D]> =
-            strip.points.iter().filter_map(|point| grid.locate(&on_grid(grid, &(point.x + place)))).collect();
+    for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts()) {
+        let place = |(at, point): (usize, &SurfacePoint<D>)| point.x + displacement(strips, number, at, t);
+        let places = strip.points.iter().enumerate().map(place);
+        let cells: BTreeSet<[usize; D]> = places.filter_map(|place| grid.locate(&on_grid(grid, &place))).collect();
         let functions = cells.into_iter().flat_map(|cell| grid.functions_of(cell));
         nodes.extend(functions.filter_map(|function| grid.node_index(&function)));
     }
@@ -149,8 +198,9 @@ impl<const D: usize> StripAttachments<D> {
     ) -> Self {
         let (offsets, mut held) = (if strips.is_empty() { Vec::new() } else { grid.offsets() }, Vec::new());
         for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts()) {
-            let (place, motion) = (strip.path.at(t), strip.path.at(t + dt) - strip.path.at(t));
             for (index, point) in strip.points.iter().enumerate() {
+                let place = displacement(strips, number, index, t);
+                let motion = displacement(strips, number, index, t + dt) - place;
                 let carried = surface.traction[number][index];
                 let grip = strip.contact.map(|contact| ContactState::of(contact, &carried));
                 // The material across a gap is what the gap is to.
@@ -283,11 +333,14 @@ impl<const D: usize> StripAttachments<D> {
             longest[LENGTHS * number + 3] = f64::NEG_INFINITY;
         }
         for held in &self.held {
-            let sums = &mut sums[held.strip];
-            let lengths = held.lengths(&self.offsets, u, grid.smallest_edge(), sums);
+            let lengths = held.lengths(&self.offsets, u, grid.smallest_edge(), &mut sums[held.strip]);
             let acting = held.traction(&self.offsets, u);
-            sums.held.add(1.0);
-            sums.given.add(held.mean(&self.offsets, u).dot(&held.motion));
+            sums[held.strip].held.add(1.0);
+            let (mean, (t, dt)) = (held.mean(&self.offsets, u), self.span);
+            for MotionShare { strip, share } in strips[held.strip].motions(held.strip, held.point) {
+                let motion = strips[strip].path.at(t + dt) - strips[strip].path.at(t);
+                sums[strip].given.add(mean.dot(&motion) * share);
+            }
             let most = longest[LENGTHS * held.strip..].iter_mut().zip(lengths);
             most.for_each(|(most, length)| *most = f64::max(*most, length));
             traction[held.strip][held.point] = match &held.grip {
@@ -306,10 +359,11 @@ impl<const D: usize> StripAttachments<D> {
         reduce(&mut traction, halo);
         let there = traction.split_off(count);
         self.keep_apart((strips, &there), surface, &mut traction);
+        let resultants = resultants(strips, &traction);
         let of_strip = totals.len() / strips.len();
         let report = |number: usize| {
             let totals = &totals[of_strip * number..][..of_strip];
-            let (force, moment) = strips[number].force(&traction[number]);
+            let Resultant { force, moment } = resultants[number];
             let lengths = &longest[LENGTHS * number..][..LENGTHS];
             let contact = strips[number].contact.map(|_| contact_report(number, totals, lengths));
             StripReport {
@@ -337,8 +391,10 @@ impl<const D: usize> StripAttachments<D> {
     ) {
         for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts() && strip.lifts()) {
             let Some(StripContact { inward, .. }) = strip.contact else { continue };
-            let closer = (strip.path.at(self.span.0 + self.span.1) - strip.path.at(self.span.0)).dot(&inward);
+            let (t, dt) = self.span;
             for (point, _) in there[number].iter().enumerate().filter(|(_, there)| there[0] == 0.0) {
+                let [start, end] = [t, t + dt].map(|t| displacement(strips, number, point, t));
+                let closer = (end - start).dot(&inward);
                 let before = inward.dot(&surface.traction[number][point]).min(0.0);
                 traction[number][point] = inward * (before + strip.penalty * closer).min(0.0);
             }

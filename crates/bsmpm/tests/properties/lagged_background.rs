@@ -22,7 +22,14 @@ fn footing(rows: Vec<(f64, [f64; 2])>) -> Scene<PlaneStrain, 2> {
         .extended();
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
     let path = Path { rows: rows.into_iter().map(|(t, u)| (t, u.into())).collect() };
-    scene.strip(Strip { contact: None, points, normal: Some([0.0, 1.0].into()), path, penalty: 4e9 })
+    scene.strip(Strip {
+        contact: None,
+        points,
+        normal: Some([0.0, 1.0].into()),
+        transitions: Default::default(),
+        path,
+        penalty: 4e9,
+    })
 }
 
 /// The steps under a background of this coefficient.

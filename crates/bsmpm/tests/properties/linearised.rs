@@ -171,8 +171,14 @@ fn strips_are_in_the_product() {
     let scene = loaded::<PlaneStrain, 2>(Stabilisation::FBar, Regime::QuasiStatic);
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.2, 1.9].into(), &[1.4, 1.9].into(), 3);
     let path = Path { rows: vec![(1.0, [0.0, -0.1].into())] };
-    let with =
-        scene.clone().strip(Strip { contact: None, points, normal: Some([0.0, 1.0].into()), path, penalty: 1e4 });
+    let with = scene.clone().strip(Strip {
+        contact: None,
+        points,
+        normal: Some([0.0, 1.0].into()),
+        transitions: Default::default(),
+        path,
+        penalty: 1e4,
+    });
     let [(free, _), (held, _)] = [&scene, &with].map(product_error);
     assert!(free <= 1e-6 && held <= 1e-6, "{free:e} {held:e}");
 }

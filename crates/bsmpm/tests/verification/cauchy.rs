@@ -29,7 +29,14 @@ fn pressed(method: Stabilisation) -> Points<2> {
     scene = scene.background(Some(soft));
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 3.0].into(), &[1.0, 3.0].into(), 4);
     let path = Path { rows: vec![(1.0, [0.0, -0.5].into())] };
-    let strip = Strip { contact: None, points, normal: Some([0.0, 1.0].into()), path, penalty: 1e4 * 100.0 / 0.5 };
+    let strip = Strip {
+        contact: None,
+        points,
+        normal: Some([0.0, 1.0].into()),
+        transitions: Default::default(),
+        path,
+        penalty: 1e4 * 100.0 / 0.5,
+    };
     scene.strip(strip).solved(1.0 / 40.0, 1.0).0.points
 }
 

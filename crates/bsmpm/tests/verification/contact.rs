@@ -220,7 +220,14 @@ fn gripped(law: Contact, normal: Option<Vector<2>>, rows: &[(f64, [f64; 2])]) ->
     let [from, to] = [[0.5, 0.5], [1.5, 0.5]].map(Vector::from);
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &from, &to, 2);
     let rows = rows.iter().map(|(t, u)| (*t, Vector::from(*u))).collect();
-    scene.strip(Strip { contact: None, points, normal, path: Path { rows }, penalty: 4e11 })
+    scene.strip(Strip {
+        contact: None,
+        points,
+        normal,
+        transitions: Default::default(),
+        path: Path { rows },
+        penalty: 4e11,
+    })
 }
 
 #[test]

@@ -77,7 +77,14 @@ fn oscillator(scheme: Scheme) -> Scene<PlaneStrain, 2> {
     let still = Path { rows: vec![(1e9, Vector::zeros())] };
     scene.model.newmark = scheme.newmark();
     scene.model.criteria.force = 1e-12;
-    let strip = Strip { contact: None, points: points.collect(), normal: None, path: still, penalty: OMEGA * OMEGA };
+    let strip = Strip {
+        contact: None,
+        points: points.collect(),
+        normal: None,
+        transitions: Default::default(),
+        path: still,
+        penalty: OMEGA * OMEGA,
+    };
     scene.strip(strip)
 }
 

@@ -224,7 +224,14 @@ fn footing(method: Stabilisation) -> Scene<PlaneStrain, 2> {
     scene.model.background = Some(Background { coefficient: 1e-3 });
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
     let path = Path { rows: vec![(1.0, [0.0, -0.05].into())] };
-    scene.strip(Strip { contact: None, points, normal: Some([0.0, 1.0].into()), path, penalty: 4e9 })
+    scene.strip(Strip {
+        contact: None,
+        points,
+        normal: Some([0.0, 1.0].into()),
+        transitions: Default::default(),
+        path,
+        penalty: 4e9,
+    })
 }
 
 #[test]

@@ -137,7 +137,8 @@ fn level_ground_keeps_k0_and_loses_the_quadrature_of_its_weight() {
     let mut scene = ground::<PlaneStrain, 2>(Material::MohrCoulomb(law));
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 4.0].into(), &[1.0, 4.0].into(), 4);
     let path = Path { rows: vec![(1.0, [0.0, -0.1].into())] };
-    scene = scene.strip(Strip { points, normal: None, contact: None, path, penalty: 1e8 });
+    scene =
+        scene.strip(Strip { points, normal: None, contact: None, transitions: Default::default(), path, penalty: 1e8 });
     scene.model.boundary.resting = vec![true];
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);

@@ -28,7 +28,16 @@ fn indented(nonlinear: Nonlinear, method: Stabilisation) -> (Plane, Vec<Accepted
     scene.model.nonlinear = nonlinear;
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.5].into(), &[1.0, 1.5].into(), 3);
     let path = Path { rows: vec![(1.0, [0.0, -0.1].into())] };
-    scene.strip(Strip { contact: None, points, normal: Some([0.0, 1.0].into()), path, penalty: 2e5 }).solved(0.1, 1.0)
+    scene
+        .strip(Strip {
+            contact: None,
+            points,
+            normal: Some([0.0, 1.0].into()),
+            transitions: Default::default(),
+            path,
+            penalty: 2e5,
+        })
+        .solved(0.1, 1.0)
 }
 
 #[test]

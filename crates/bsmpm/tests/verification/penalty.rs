@@ -29,8 +29,14 @@ fn pressure(factor: f64) -> f64 {
     let at = |x: f64, y: f64| Vector::<2>::new(x, y);
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 2.0), &at(1.0, 2.0), 4);
     let path = Path { rows: vec![(1.0, at(0.0, -0.4))] };
-    let mut scene =
-        scene.strip(Strip { contact: None, points, normal: Some(at(0.0, 1.0)), path, penalty: factor * YOUNG / CELL });
+    let mut scene = scene.strip(Strip {
+        contact: None,
+        points,
+        normal: Some(at(0.0, 1.0)),
+        transitions: Default::default(),
+        path,
+        penalty: factor * YOUNG / CELL,
+    });
     let mut last = 0.0;
     scene.march(1.0 / 16.0, 1.0, |_, accepted| last = -accepted.report.strips[0].force[1]);
     last.abs()

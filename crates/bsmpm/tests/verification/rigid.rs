@@ -240,6 +240,7 @@ fn a_flat_punch_is_a_strip() {
             let strip = Strip {
                 points: surface::along::<PlaneStrain, 2>(&scene().model.grid, &from, &to, 4),
                 normal: (friction == 0.0).then(|| Vector::from([0.0, 1.0])),
+                transitions: Default::default(),
                 path: Path { rows: vec![(1.0, Vector::from([0.0, -0.01]))] },
                 penalty: 1e10 / h,
                 contact: None,

@@ -21,7 +21,14 @@ fn pressed(law: Contact, (from, to): (f64, f64), rows: &[(f64, [f64; 2])]) -> Sc
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &from, &to, 4);
     let rows = rows.iter().map(|(t, u)| (*t, Vector::from(*u))).collect();
     let contact = Some(StripContact { law, inward: [0.0, -1.0].into() });
-    let strip = Strip { points, normal: None, contact, path: Path { rows }, penalty: 1e3 * YOUNG / CELL };
+    let strip = Strip {
+        points,
+        normal: None,
+        contact,
+        transitions: Default::default(),
+        path: Path { rows },
+        penalty: 1e3 * YOUNG / CELL,
+    };
     let mut scene = scene.strip(strip);
     scene.model.criteria.force = 1e-6;
     scene.model.criteria.energy = 1e-9;

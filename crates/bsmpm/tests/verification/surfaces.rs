@@ -34,7 +34,14 @@ fn block(cells: [usize; 2], order: usize) -> Plane {
 fn pressed(scene: Plane, depth: f64, rough: bool, penalty: f64) -> Plane {
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
     let path = Path { rows: vec![(1.0, at(0.0, -depth))] };
-    scene.strip(Strip { contact: None, points, normal: (!rough).then(|| at(0.0, 1.0)), path, penalty })
+    scene.strip(Strip {
+        contact: None,
+        points,
+        normal: (!rough).then(|| at(0.0, 1.0)),
+        transitions: Default::default(),
+        path,
+        penalty,
+    })
 }
 
 #[test]
