@@ -3,6 +3,7 @@
 use crate::case::{Case, Support};
 use crate::record::Record;
 use crate::report::Report;
+use crate::surfaces::name_of_strip;
 use crate::words::{Side, Word};
 
 const KEY: &str = "ru";
@@ -56,7 +57,29 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     if bodies().any(|number| !wet(number)) {
         report.note(material.path_of(KEY), "this material only", "pores of the others hold no pressure");
     }
+    warn_of_friction(case, report);
     if !case.tractions.is_empty() || !case.point_loads.is_empty() {
         report.note(material.path_of(KEY), "of the weight alone", "loads raise no pore pressure: they are drained");
     }
+}
+
+/// Faces of the grid divide the normal force between the soil and its water, strips and rigid bodies do not.
+fn warn_of_friction(case: &Case, report: &mut Report<'_>) {
+    let footing = case.footing.iter().map(|footing| footing.contact);
+    let contacts = footing.chain(case.prescribed.iter().map(|prescribed| prescribed.contact));
+    let strips = contacts.enumerate().filter(|(_, contact)| contact.is_some_and(|of| of.law.friction > 0.0));
+    let strips = strips.map(|(number, _)| name_of_strip(case, number));
+    let rigid = case.rigid.iter().enumerate().filter(|(_, rigid)| rigid.friction > 0.0);
+    let names: Vec<String> = strips.chain(rigid.map(|(number, _)| format!("rigid.{number}"))).collect();
+    if names.is_empty() {
+        return;
+    }
+    let ratio = case.materials.iter().map(|named| named.ratio).fold(0.0, f64::max);
+    report.warn(format!(
+        "friction of {} acts on the total normal force, water included: with ru = {ratio} it is up to {:.2} times too large. \
+         Multiply its coefficient by {:.2} (1 - ru), or use [boundary] friction.",
+        names.join(", "),
+        1.0 / (1.0 - ratio),
+        1.0 - ratio
+    ));
 }

@@ -47,6 +47,7 @@ mod told;
 mod told_parts;
 mod undrained_stages;
 mod unsaturated_column;
+mod water_and_friction;
 mod water_in_slopes;
 
 #[path = "../support/mod.rs"]

@@ -29,12 +29,14 @@ pub struct Contacts<const D: usize> {
 
 impl<const D: usize> Contacts<D> {
     /// Of the `boundary` in a step from `t`: of nodes with components that are `free`, in the statuses that the last
-    /// displacement had, `guess`, if there is one. One exchange with the neighbours a face that lifts.
+    /// displacement had, `guess`, if there is one; `water_force` is what pore water carries of the normal forces, N.
+    /// One exchange with the neighbours a face that lifts.
     pub fn of(
         (boundary, grid): (&Boundary<D>, &Grid<D>),
         (shape, points): (&Shape<D>, &Points<D>),
         free: &[bool],
         (t, guess): (f64, &[f64]),
+        water_force: Option<&[f64]>,
         halo: &dyn Halo,
     ) -> Self {
         let mut nodes = Vec::new();
@@ -67,6 +69,7 @@ impl<const D: usize> Contacts<D> {
                     law,
                     along,
                     gap,
+                    water_force: water_force.map_or(0.0, |force| force[Nodal::<D>::at(node, face.axis)]),
                     status: Status::Open,
                     rested: [false; D],
                     transverse_stiffness: 0.0,

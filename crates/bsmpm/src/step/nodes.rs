@@ -144,7 +144,11 @@ impl<const D: usize> Nodes<D> {
         let extension = Extension::of::<K>(model, shape, points, &active, &at_bodies, &mut free, halo);
         let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
         let contacts = match model.boundary.has_contact() {
-            true => Contacts::of((&model.boundary, &model.grid), (shape, points), &free, (t, last), halo),
+            true => {
+                let water = carried::forces_on_faces(model, (shape, points), volume, t + dt, halo);
+                let window = (&model.boundary, &model.grid);
+                Contacts::of(window, (shape, points), &free, (t, last), water.as_deref(), halo)
+            }
             false => Contacts::default(),
         };
         let dashpots = match model.boundary.absorbing().next() {

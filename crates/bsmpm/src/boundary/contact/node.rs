@@ -36,6 +36,8 @@ pub(super) struct ContactNode<const D: usize> {
     pub along: [bool; D],
     /// m  at the start of the step; infinite without material
     pub gap: f64,
+    /// N  part of the normal force that pore water carries
+    pub water_force: f64,
     /// what it does
     pub status: Status<D>,
     /// components that did not move in the last step
@@ -101,9 +103,9 @@ impl<const D: usize> ContactNode<D> {
         if self.status == Status::Open { 0.0 } else { self.inward * normal }
     }
 
-    /// N  most that friction can be.
+    /// N  most that friction can be, by Coulomb's law for the effective normal force.
     pub fn limit(&self, reaction: &[f64]) -> f64 {
-        self.law.friction * self.pushed(reaction).max(0.0)
+        self.law.friction * (self.pushed(reaction) - self.water_force).max(0.0)
     }
 
     /// N  force of the face along itself on the body.
