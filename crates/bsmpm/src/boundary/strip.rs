@@ -7,12 +7,12 @@
 //!
 //! # Strips that meet
 //!
-//! Where two strips meet and move differently, a continuous displacement cannot follow both. There the prescribed motion
-//! is the spline function sum_I N_I(x) U_I, whose coefficient U_I is the motion of the strip that is nearer to the node of
-//! N_I (its Greville point), and the mean of both where they are equally near. Splines can follow it exactly: a motion
-//! that they cannot follow would be resisted by tractions that grow in every step. A point of one strip then follows
-//! the motions of both in parts ([`MotionShare`]), and its force counts for both in the same parts. So the force of a
-//! strip is the one that does work on its motion: the sum of forces at its nodes.
+//! Where two strips meet and move differently, a continuous displacement cannot follow both. There the prescribed
+//! motion is the spline function sum_I N_I(x) U_I, whose coefficient U_I is the motion of the strip that is nearer to
+//! the node of N_I (its Greville point), and the mean of both where they are equally near. Splines can follow it
+//! exactly: a motion that they cannot follow would be resisted by tractions that grow in every step. A point of one
+//! strip then follows the motions of both in parts ([`MotionShare`]), and its force counts for both in the same parts.
+//! So the force of a strip is the one that does work on its motion: the sum of forces at its nodes.
 
 mod grip;
 mod point;
@@ -110,8 +110,8 @@ struct Resultant<const D: usize> {
     moment: f64,      // N m  about the strip's middle in the plane of the axes 0 and 1, counter-clockwise
 }
 
-/// Forces of all strips on the body, of what their points carry. The force at a point belongs to the strips whose motions
-/// it follows, by the same parts, so that force times motion is the work.
+/// Forces of all strips on the body, of what their points carry. The force at a point belongs to the strips whose
+/// motions it follows, by the same parts, so that force times motion is the work.
 fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -> Vec<Resultant<D>> {
     let middles: Vec<Vector<D>> = strips.iter().map(Strip::middle).collect();
     let mut resultants = vec![Resultant { force: Vector::zeros(), moment: 0.0 }; strips.len()];

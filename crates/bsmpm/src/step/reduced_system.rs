@@ -143,8 +143,8 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         carried
     }
 
-    /// Adds E^T K E - K_II to the solver's matrix, every entry on one rank. The blocks of patches are square, so that each
-    /// pair of nodes has the block of either order.
+    /// Adds E^T K E - K_II to the solver's matrix, every entry on one rank. The blocks of patches are square, so that
+    /// each pair of nodes has the block of either order.
     fn add_carried_blocks(&mut self) {
         let mut diagonal = vec![0.0; self.grid.nodes() * D];
         let carried = self.carried_blocks();

@@ -79,8 +79,8 @@ pub fn forces_on_faces<K: Kinematics<D>, const D: usize>(
     Some(forces)
 }
 
-/// Value at `x` of the line through weighted points of which `moments` are sum w, w x, w x^2, w y, w x y: their mean where
-/// all have one place, 0 without points.
+/// Value at `x` of the line through weighted points of which `moments` are sum w, w x, w x^2, w y, w x y: their mean
+/// where all have one place, 0 without points.
 fn linear_fit(moments: &[f64], x: f64) -> f64 {
     let [weight, first, second, value, product] = [0, 1, 2, 3, 4].map(|k| moments[k]);
     if weight <= 0.0 {
@@ -106,8 +106,8 @@ fn pressures<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
     excess_pressures(model, points, t)
 }
 
-/// Pa  by which pore pressure in the total stress exceeds that of still water, of every point: of water that flows at the
-/// start of the step. `None` where none flows.
+/// Pa  by which pore pressure in the total stress exceeds that of still water, of every point: of water that flows at
+/// the start of the step. `None` where none flows.
 fn excess_pressures<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
