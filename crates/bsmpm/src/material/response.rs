@@ -146,12 +146,11 @@ impl Response {
     /// Second-order works per reference volume of the step that led here, J/m3 (Hill, 1958): `Δε : D : Δε` of elastic
     /// ground and `Δε : D : Δεᵉ` of this one, for the strain Δε of the step. D follows from the law's moduli; `gap` was
     /// open before the step, and is part of the trial strain.
-    pub fn second_order_works(&self, strain: &Symmetric, gap: f64) -> [f64; 2] {
+    pub fn second_order_works(&self, strain: &Tensor, gap: f64) -> [f64; 2] {
         let Moduli { lambda, mu } = self.moduli;
-        let strain = strain.full();
         let volumetric = strain.trace();
-        let elastic = lambda * volumetric.powi(2) + 2.0 * mu * strain.dot(&strain);
-        let returned = self.returned().map_or(0.0, |returned| returned.full().dot(&strain));
+        let elastic = lambda * volumetric.powi(2) + 2.0 * mu * strain.dot(strain);
+        let returned = self.returned().map_or(0.0, |returned| returned.full().dot(strain));
         [elastic, elastic - returned + self.moduli.bulk() * gap * volumetric]
     }
 

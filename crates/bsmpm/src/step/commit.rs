@@ -130,8 +130,7 @@ pub fn answers<K: Kinematics<D>, const D: usize>(
             let gap = points.gap_of(p);
             let mut answer = Answer::of(&response, gap);
             if asks {
-                answer.second_order_works =
-                    response.second_order_works(&trial.first_order_strain(model, points, p), gap);
+                answer.second_order_works = response.second_order_works(&trial.strain_by_series(model, points, p), gap);
             }
             answer
         }

@@ -227,11 +227,11 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         Some(Response::elastic(&strained, (0.0, 0.0)).ok()?.trial_strain())
     }
 
-    /// The same to first order, without an eigenvalue problem: `½ (dF-bar dF-bar^T - I)`.
-    pub(crate) fn first_order_strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Symmetric {
-        let mut strain = self.strained(model, points, p);
-        strain.0[..3].iter_mut().for_each(|stretch| *stretch -= 1.0);
-        strain.scaled(0.5)
+    /// The same by the series of the logarithm up to fourth order, without an eigenvalue problem: with e = dF-bar
+    /// dF-bar^T - I, ½ (e - e²/2 + e³/3 - e⁴/4). Strains of a step of 10 % are right to 1e-4.
+    pub(crate) fn strain_by_series(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Tensor {
+        let (one, e) = (Tensor::identity(), self.strained(model, points, p).full() - Tensor::identity());
+        e * (one - e * (one * 0.5 - e * (one / 3.0 - e * 0.25))) * 0.5
     }
 
     /// dF-bar dF-bar^T of point `p`.
