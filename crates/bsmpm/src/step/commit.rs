@@ -129,8 +129,9 @@ pub fn answers<K: Kinematics<D>, const D: usize>(
             row.into_iter().for_each(|row| response.advance(row));
             let gap = points.gap_of(p);
             let mut answer = Answer::of(&response, gap);
-            if asks {
-                answer.second_order_works = response.second_order_works(&trial.strain_by_series(model, points, p), gap);
+            let strain = if asks { trial.strain(model, points, p) } else { None };
+            if let Some(strain) = strain {
+                answer.second_order_works = response.second_order_works(&strain, gap);
             }
             answer
         }

@@ -192,7 +192,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     /// What the viscous stress of point `p` takes in the step per reference volume, J/m3, if it has any.
     pub(crate) fn damping_takes(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<f64> {
         let viscous = self.viscous_at(model, points, p)?;
-        Some(viscous.tau.full().dot(&self.strain(model, points, p)?.full()))
+        Some(viscous.tau.full().dot(&self.strain(model, points, p)?))
     }
 
     /// The viscous stress of point `p` where the constitution's response is not at hand, if it has any.
@@ -221,23 +221,16 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         self.pore.as_ref().map(|pore| pore[p])
     }
 
-    /// Hencky strain of point `p` in the step: `½ ln dF-bar dF-bar^T`; none of a point that inverted.
-    fn strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Symmetric> {
-        let strained = self.strained(model, points, p);
-        Some(Response::elastic(&strained, (0.0, 0.0)).ok()?.trial_strain())
-    }
-
-    /// The same by the series of the logarithm up to fourth order, without an eigenvalue problem: with e = dF-bar
-    /// dF-bar^T - I, ½ (e - e²/2 + e³/3 - e⁴/4). Strains of a step of 10 % are right to 1e-4.
-    pub(crate) fn strain_by_series(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Tensor {
-        let (one, e) = (Tensor::identity(), self.strained(model, points, p).full() - Tensor::identity());
-        e * (one - e * (one * 0.5 - e * (one / 3.0 - e * 0.25))) * 0.5
-    }
-
-    /// dF-bar dF-bar^T of point `p`.
-    fn strained(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Symmetric {
+    /// Hencky strain of point `p` in the step: `½ ln (I + e)`, e = dF-bar dF-bar^T - I; none of a point that inverted.
+    /// Of a small e it is the series ½ (e - e²/2 + e³/3 - e⁴/4), right to 1e-12, which saves an eigenvalue problem.
+    pub(crate) fn strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Tensor> {
         let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
-        K::push_forward(&dF_bar, &Symmetric::IDENTITY)
+        let strained = K::push_forward(&dF_bar, &Symmetric::IDENTITY);
+        let (one, e) = (Tensor::identity(), strained.full() - Tensor::identity());
+        if e.amax() < SMALL {
+            return Some(e * (one - e * (one * 0.5 - e * (one / 3.0 - e * 0.25))) * 0.5);
+        }
+        Some(Response::elastic(&strained, (0.0, 0.0)).ok()?.trial_strain().full())
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.
@@ -254,6 +247,9 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         }
     }
 }
+
+/// Strains of a step whose logarithm is a series.
+const SMALL: f64 = 1e-3;
 
 /// kept S(w dJ) / (w dJ).
 #[inline(always)]
