@@ -2,6 +2,7 @@
 #![doc = include_str!("observe.md")]
 
 mod front;
+pub mod interfaces;
 pub mod invariants;
 pub mod noise;
 mod part;

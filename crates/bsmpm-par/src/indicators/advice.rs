@@ -51,6 +51,18 @@ pub(super) fn of(name: &str, case: &Case) -> &'static str {
             "the algorithm damps what should move on, or (negative) drives it: look at the history's parts for which one does; \
              smaller steps, another [stabilisation] method where integration is negative, less background or numerical damping"
         }
+        "interface-shift" if may_fit => {
+            "stresses within three cells of the interface are wrong by 3 % (RMS) at 0.03 cells, 10 % at 0.1 and about 25 % at 0.2. \
+             Use solver.quadrature = \"fitted\" (dry ground), or larger cells there"
+        }
+        "interface-shift" => {
+            "stresses within three cells of the interface are wrong: with fitted quadrature by 2 % (RMS) at 0.2 cells and 3 to 5 % \
+             beyond 0.5, else by 10 % at 0.1 and about 25 % at 0.2. Use larger cells there"
+        }
+        "permeability-shift" => {
+            "the flow of water through the interface is wrong, by up to a factor of 2 once points have crossed their grid line. \
+             Use larger cells there"
+        }
         "slip" => {
             "material slides along or off a strip that should hold it, so that the strip's force is too small; more steps, or a \
              strip that covers more cells"

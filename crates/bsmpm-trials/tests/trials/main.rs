@@ -21,6 +21,7 @@ mod limit_load;
 mod lock;
 mod meeting_motions;
 mod memory;
+mod moved_interfaces;
 mod open_faces;
 mod outputs;
 mod ranks;

@@ -1,0 +1,139 @@
+//! How far interfaces between materials have left the grid lines on which they were at the start.
+//!
+//! Strains jump at C0 lines only, and gradients of pore pressure at grid lines only, and grid lines do not move.
+
+use crate::grid::KnotVector;
+use crate::model::Model;
+use crate::parallel::Halo;
+use crate::points::Points;
+use crate::tensor::Vector;
+use std::collections::BTreeMap;
+
+/// Ratio of two permeabilities from which the flow changes with the place of their interface.
+const UNLIKE: f64 = 3.0;
+
+/// The farthest that an interface has left its line, in cells; `None` where there is no such interface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InterfaceShift {
+    /// of two materials that meet on a C0 line
+    pub stress: Option<f64>,
+    /// of two materials with unlike permeabilities that meet on a grid line
+    pub water: Option<f64>,
+}
+
+/// A piece of a grid line as long as a cell, and one side of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct LineSide {
+    axis: usize,
+    /// cell below the line along the axis
+    below: usize,
+    /// numbers of the cells along the other axes, as one
+    across: usize,
+    is_above: bool,
+}
+
+/// The point of a material that was nearest to a piece on one side.
+#[derive(Clone, Copy, Debug)]
+struct Neighbour {
+    distance: f64, // m  from the line at the start
+    moved: f64,    // cells  across the line
+    is_c0: bool,
+}
+
+impl Neighbour {
+    /// The nearer of both; of two as near the one that has moved farther.
+    fn nearer(self, other: Self) -> Self {
+        let is_nearer = other.distance < self.distance;
+        let is_as_near = other.distance == self.distance && other.moved > self.moved;
+        if is_nearer || is_as_near { other } else { self }
+    }
+}
+
+/// By side of a piece and number of a material.
+type Neighbours = BTreeMap<(LineSide, usize), Neighbour>;
+
+/// Of the points of all ranks. One gathering. Points belong to the cell in which they were at the start.
+pub fn shift<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> InterfaceShift {
+    let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
+    let mut message = Vec::new();
+    for ((side, material), of) in neighbours(model, points) {
+        let numbers = [side.axis, side.below, side.across, usize::from(side.is_above), material];
+        message.extend(numbers.map(|number| number as f64));
+        message.extend([of.distance, of.moved, f64::from(u8::from(of.is_c0))]);
+    }
+    let mut all = Neighbours::new();
+    for item in halo.gather(&message).chunks_exact(8) {
+        let [axis, below, across, above, material] = [0, 1, 2, 3, 4].map(|at| item[at] as usize);
+        let side = LineSide { axis, below, across, is_above: above == 1 };
+        keep(&mut all, side, material, Neighbour { distance: item[5], moved: item[6], is_c0: item[7] == 1.0 });
+    }
+    let permeability = |material: usize, axis: usize| {
+        let soil = flow.and_then(|flow| flow.soils.get(material)?.as_ref());
+        soil.and_then(|soil| soil.permeability.as_ref()).map(|permeability| permeability.along[axis])
+    };
+    let mut found = InterfaceShift::default();
+    for (&(side, lower), below) in all.iter().filter(|((side, _), _)| !side.is_above) {
+        let above = LineSide { is_above: true, ..side };
+        for (&(_, upper), above) in all.range((above, 0)..=(above, usize::MAX)) {
+            let moved = below.moved.max(above.moved);
+            if lower != upper && below.is_c0 {
+                found.stress = Some(found.stress.map_or(moved, |so_far| so_far.max(moved)));
+            }
+            let permeabilities = [lower, upper].map(|material| permeability(material, side.axis));
+            let [Some(a), Some(b)] = permeabilities else { continue };
+            if a.max(b) >= UNLIKE * a.min(b) {
+                found.water = Some(found.water.map_or(moved, |so_far| so_far.max(moved)));
+            }
+        }
+    }
+    found
+}
+
+fn keep(all: &mut Neighbours, side: LineSide, material: usize, neighbour: Neighbour) {
+    let nearest = all.get(&(side, material)).map_or(neighbour, |known| known.nearer(neighbour));
+    all.insert((side, material), nearest);
+}
+
+/// Of the points of this rank, in the half of a cell next to each line.
+fn neighbours<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Neighbours {
+    let (grid, flows) = (&model.grid, model.water.as_ref().is_some_and(|water| water.flow.is_some()));
+    let mut found = Neighbours::new();
+    for p in 0..points.len() {
+        let start: Vector<D> = points.x[p] - points.u[p];
+        let Some(cell) = grid.locate(&start) else { continue };
+        for axis in 0..D {
+            let knots = &grid.axes()[axis];
+            let [lower, upper] = [0, 1].map(|end| knots.breakpoint(cell[axis] + end));
+            let is_upper = start[axis] > 0.5 * (lower + upper);
+            let Some(line) = line_beside(knots, cell[axis], is_upper) else { continue };
+            if !line.is_c0 && !flows {
+                continue;
+            }
+            let others = (0..D).filter(|other| *other != axis);
+            let across = others.fold(0, |number, other| number * grid.axes()[other].cells() + cell[other]);
+            let side = LineSide { axis, below: line.below, across, is_above: !is_upper };
+            let distance = if is_upper { upper - start[axis] } else { start[axis] - lower };
+            let moved = points.u[p][axis].abs() / (upper - lower);
+            let neighbour = Neighbour { distance, moved, is_c0: line.is_c0 };
+            keep(&mut found, side, usize::from(points.material[p]), neighbour);
+        }
+    }
+    found
+}
+
+/// A line inside the grid.
+struct InnerLine {
+    below: usize, // cell
+    is_c0: bool,
+}
+
+/// The line above or below a cell. Between the cells at a C0 line there are q - 1 or more without length.
+fn line_beside(knots: &KnotVector, cell: usize, is_upper: bool) -> Option<InnerLine> {
+    let has_length = |other: &usize| knots.has_length(*other);
+    let [below, above] = if is_upper {
+        [cell, (cell + 1..knots.cells()).find(has_length)?]
+    } else {
+        [(0..cell).rev().find(has_length)?, cell]
+    };
+    Some(InnerLine { below, is_c0: knots.order() > 1 && above - below >= knots.order() })
+}
