@@ -3,7 +3,7 @@
 use crate::error::{Choice, Error, Origin, Place};
 use crate::source::Source;
 use crate::words::RemovedWord;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Errors that are reported at most; a file with more is no case.
 const MOST: usize = 100;
@@ -14,7 +14,7 @@ pub(crate) struct Report<'a> {
     source: &'a Source<'a>,
     overrides: &'a [String],
     errors: Vec<(Origin, Error)>,
-    pub(crate) warnings: Vec<String>,
+    warnings: Vec<String>,
     pub(crate) notes: Vec<Choice>,
 }
 
@@ -51,6 +51,28 @@ impl<'a> Report<'a> {
         self.warnings.push(message.into());
     }
 
+    /// Hands over the warnings. Warnings that differ only in the key that they begin with are one, with all these keys.
+    pub(crate) fn take_warnings(&mut self) -> Vec<String> {
+        let mut merged: Vec<(Vec<String>, String)> = Vec::new();
+        let mut numbers: HashMap<String, usize> = HashMap::new();
+        for warning in std::mem::take(&mut self.warnings) {
+            let Some((key, text)) = warning.split_once(": ").filter(|(key, _)| !key.contains(' ')) else {
+                merged.push((Vec::new(), warning));
+                continue;
+            };
+            let number = *numbers.entry(text.to_owned()).or_insert(merged.len());
+            if number == merged.len() {
+                merged.push((Vec::new(), text.to_owned()));
+            }
+            merged[number].0.push(key.to_owned());
+        }
+        let line = |(keys, text): (Vec<String>, String)| match keys.is_empty() {
+            true => text,
+            false => format!("{}: {text}", listed(&keys)),
+        };
+        merged.into_iter().map(line).collect()
+    }
+
     pub(crate) fn note(&mut self, key: impl Into<String>, value: impl Into<String>, reason: impl Into<String>) {
         self.notes.push(Choice { key: key.into(), value: value.into(), reason: reason.into() });
     }
@@ -79,6 +101,16 @@ impl<'a> Report<'a> {
             });
         }
         errors
+    }
+}
+
+/// Names in words: all of up to three, of more the first and the number of the others.
+pub(crate) fn listed(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [others @ .., last] if names.len() <= 3 => format!("{} and {last}", others.join(", ")),
+        [first, others @ ..] => format!("{first} and {} others", others.len()),
     }
 }
 

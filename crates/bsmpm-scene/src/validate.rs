@@ -170,7 +170,7 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     ratio::check(&case, record, report);
     flow::check(&case, record, report);
     axisymmetric::check(&case, record, report);
-    Some(Case { warnings: std::mem::take(&mut report.warnings), notes: std::mem::take(&mut report.notes), ..case })
+    Some(Case { warnings: report.take_warnings(), notes: std::mem::take(&mut report.notes), ..case })
 }
 
 fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>) -> Option<Analysis> {

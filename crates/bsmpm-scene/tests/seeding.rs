@@ -99,3 +99,31 @@ fn a_column_range_without_bodies_is_empty() {
     assert_eq!(seed::<PlaneStrain, 2>(&case, 2..4).count(), 0);
     assert_eq!(seed::<PlaneStrain, 2>(&case, 0..0).count(), 0);
 }
+
+/// Four bodies in a cell have as many points in it as one with two along each axis.
+#[test]
+fn one_point_per_cell_is_warned_of_once_and_only_where_points_lie_far_apart() {
+    let boxes = |edge: f64| -> Vec<[f64; 4]> {
+        let place = |k: usize| [k % 16, k / 16].map(|i| i as f64 * edge);
+        (0..256).map(place).map(|[x, y]| [x, y, x + edge, y + edge]).collect()
+    };
+    let warnings = |edge: f64| case("lower = [0, 0]\nupper = [16, 16]\ncell = 1", &boxes(edge), 1).warnings;
+    let warned = |edge: f64| -> Vec<String> {
+        warnings(edge).into_iter().filter(|warning| warning.contains("1 point per cell")).collect()
+    };
+    assert_eq!(warned(0.5), [""; 0]);
+    let found = warned(1.0);
+    assert!(found.len() == 1 && found[0].starts_with("body.0 and 255 others: "), "{found:?}");
+    let cut = case("lower = [0, 0]\nupper = [2, 2]\ncell = 1", &[[0.0, 0.0, 0.5, 0.75], [0.5, 0.0, 1.0, 0.5]], 1);
+    let found: Vec<_> = cut.warnings.iter().filter(|warning| warning.contains("1 point per cell")).collect();
+    assert!(found.len() == 1 && found[0].starts_with("body.0: "), "{found:?}");
+}
+
+/// A warning of many bodies is one line with their number, the worst of them named.
+#[test]
+fn warnings_that_repeat_for_every_body_are_one_line() {
+    let boxes: Vec<[f64; 4]> = (0..8).map(|k| [0.0, f64::from(k), 4.0, f64::from(k) + 0.1]).collect();
+    let warnings = case("lower = [0, 0]\nupper = [8, 8]\ncell = 1", &boxes, 2).warnings;
+    let thin: Vec<_> = warnings.iter().filter(|warning| warning.contains("of a cell thick")).collect();
+    assert!(thin.len() == 1 && thin[0].starts_with("body.0 and 7 others: along y it is 0.10 of a cell"), "{thin:?}");
+}

@@ -6,8 +6,8 @@ use crate::estimate::MOST_POINTS;
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
-use crate::region::{self, Region, Volume, Window};
-use crate::report::{Report, shortened};
+use crate::region::{self, AxisExtent, Region, Volume, Window};
+use crate::report::{Report, listed, shortened};
 use crate::words::Geometry;
 use bsmpm::model::Regime;
 
@@ -43,6 +43,9 @@ pub(super) fn read_all(
         root.error("body", format!("{points} material points in all; at most {MOST_POINTS} are possible"), report);
         return None;
     }
+    if let Some(grid) = grid {
+        warn_of_coarse(records, &bodies, grid, report);
+    }
     Some(bodies)
 }
 
@@ -73,9 +76,6 @@ fn read(
         }
     }
     let points_per_cell = record.count("points_per_cell").map(|count| count as usize);
-    if points_per_cell == Some(1) {
-        report.warn(format!("{}: 1 point per cell integrates too coarsely; take 2 or more", record.path));
-    }
     if points_per_cell == Some(2) && grid.is_some_and(|grid| grid.order == 3) {
         report.warn(format!(
             "{}: 2 points per cell integrate cubic splines too coarsely: the stress at the base of a bar that its weight \
@@ -98,25 +98,59 @@ fn read(
             None => record.error(shape::key(record), message, report),
         }
     }
-    let alone = body.region.alone();
-    if alone > ALONE && body.points_per_cell > 1 {
+    Some(body)
+}
+
+/// Warns of bodies whose points integrate too coarsely, each cause in one line.
+fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: &mut Report<'_>) {
+    let paths = |is_meant: &dyn Fn(&Body) -> bool| -> Vec<String> {
+        let meant = records.iter().zip(bodies).filter(|(_, body)| is_meant(body));
+        meant.map(|(record, _)| record.path.clone()).collect()
+    };
+    let single = paths(&|body| body.points_per_cell == 1 && is_coarse(body, grid));
+    if !single.is_empty() {
         report.warn(format!(
-            "{}: {:.0} % of it lies in cells where one point stands for all that is there, as its parts are thinner than \
-             its points lie apart: how it bends, and where its mass is within a cell, cannot be trusted; take smaller \
-             cells or more points_per_cell",
-            record.path,
-            1e2 * alone
+            "{}: 1 point per cell integrates too coarsely. Increase points_per_cell to 2 or more.",
+            listed(&single)
         ));
     }
-    if let Some((axis, part)) = grid.and_then(|grid| thinnest(&body, grid)).filter(|_| body.points_per_cell > 1) {
+    let several = |body: &Body| body.points_per_cell > 1;
+    let alone = |body: &Body| Some(body.region.alone()).filter(|part| several(body) && *part > ALONE);
+    if let Some(most) = bodies.iter().filter_map(alone).reduce(f64::max) {
+        let paths = paths(&|body| alone(body).is_some());
+        let up_to = if paths.len() > 1 { "up to " } else { "" };
+        report.warn(format!(
+            "{}: {up_to}{:.0} % of it lies in cells where one point stands for all that is there, as its parts are thinner \
+             than its points lie apart: how it bends, and where its mass is within a cell, cannot be trusted; take smaller \
+             cells or more points_per_cell",
+            listed(&paths),
+            1e2 * most
+        ));
+    }
+    let thin = |body: &Body| thinnest(body, grid).filter(|_| several(body));
+    if let Some((axis, part)) = bodies.iter().filter_map(thin).min_by(|a, b| a.1.total_cmp(&b.1)) {
         report.warn(format!(
             "{}: along {} it is {part:.2} of a cell thick, thinner than points lie apart elsewhere: how it bends, and strains \
              beside it that are not its own, cannot be trusted; take smaller cells there",
-            record.path,
+            listed(&paths(&|body| thin(body).is_some())),
             ["x", "y", "z"][axis]
         ));
     }
-    Some(body)
+}
+
+/// Whether points lie farther apart than half a cell if the body has one of them per cell: its bounds contain more than
+/// half of a cell along some axis. Bodies of half a cell, side by side, have as many points as others with two.
+fn is_coarse(body: &Body, grid: &GridSpec) -> bool {
+    let [lower, upper] = body.region.corners();
+    (0..grid.dims()).any(|axis| {
+        let along = &grid.axes[axis];
+        let extent = AxisExtent::new(along, lower[axis], upper[axis]);
+        let is_long = |cell: usize| {
+            let [from, to] = extent.part(cell);
+            to - from > (0.5 + ROUNDING) * along.cell(cell)
+        };
+        extent.cells.len() > 2 || extent.cells.clone().any(is_long)
+    })
 }
 
 /// The axis along which a box is thinner than points lie apart in a cell, and the part of a cell that it has there: its
