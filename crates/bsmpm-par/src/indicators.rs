@@ -40,8 +40,8 @@ const ENERGY: [f64; 2] = [1e-4, 0.1];
 const GROWTH: f64 = 0.02;
 /// Usual part of the water that is lost: a step may leave so much of its own.
 const WATER: f64 = 1e-4;
-/// Part of the thinnest body along which smoothing is usual: of all strain in every step, and of the elastic dilation
-/// in proportion to plastic flow, which renews it.
+/// Part of the thinnest connected material along which smoothing is usual: of all strain in every step, and of the
+/// elastic dilation in proportion to plastic flow, which renews it.
 const SMOOTHED: [f64; 2] = [0.1, 1.5];
 /// Usual slip of a strip in a step over its motion.
 const SLIP: f64 = 0.01;
@@ -278,16 +278,16 @@ fn smoothing(case: &Case, passes: f64) -> Indicator {
     let (meaning, part) = match case.stabilisation {
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => (
             "along which the elastic dilation was smoothed in all steps together, by the share of plastic flow, mean over the \
-             points; usual: up to 1.5 of the thinnest body",
+             points; usual: up to 1.5 of the thinnest connected material",
             SMOOTHED[1],
         ),
         _ => (
             "along which the elastic strain was smoothed in all steps together, once in each; usual: up to a tenth of the \
-             thinnest body",
+             thinnest connected material",
             SMOOTHED[0],
         ),
     };
-    Indicator::new(setup::smoothing_length(case, passes), "m", meaning, [0.0, part * setup::thinnest(case)])
+    Indicator::new(setup::smoothing_length(case, passes), "m", meaning, [0.0, part * case.thinnest()])
 }
 
 /// All of them in a line, and a line on each that is unusual.

@@ -126,8 +126,9 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
         choices.push(choice("penalty of rigid strips", &format!("{:.6e} Pa/m", penalty(case)), reason));
     }
     if let Some((length, size)) = smoothing(case, bsmpm_scene::model::nominal_steps(case)) {
-        let reason =
-            format!("sqrt(steps (q+1)/6) h of modified-f-bar at the nominal steps; the thinnest body has {size} m");
+        let reason = format!(
+            "sqrt(steps (q+1)/6) h of modified-f-bar at the nominal steps; the thinnest connected material has {size} m"
+        );
         choices.push(choice("smoothing length", &format!("{length:.3e} m"), &reason));
     }
     choices
@@ -175,7 +176,7 @@ pub fn warnings(case: &Case, ranks: usize) -> Vec<String> {
     {
         warnings.push(format!(
             "modified-f-bar smooths the elastic strain once a step, whatever the step's length: over all steps along about \
-             {length:.2e} m, where the thinnest body has {size} m; results belong to their number of steps"
+             {length:.2e} m, where the thinnest connected material has {size} m; results belong to their number of steps"
         ));
     }
     warnings
@@ -184,25 +185,17 @@ pub fn warnings(case: &Case, ranks: usize) -> Vec<String> {
 /// Part of a body's size beyond which the smoothing of all steps is told.
 const SMALL: f64 = 0.1;
 
-/// Length (m) along which modified F-bar smooths in so many steps, and the smallest edge of any body (m).
+/// Length (m) along which modified F-bar smooths in so many steps, and the thickness of the thinnest piece of connected
+/// material (m).
 fn smoothing(case: &Case, steps: u64) -> Option<(f64, f64)> {
     if case.stabilisation != Stabilisation::ModifiedFBar {
         return None;
     }
-    Some((smoothing_length(case, steps as f64), thinnest(case)))
+    Some((smoothing_length(case, steps as f64), case.thinnest()))
 }
 
 /// Length (m) along which so many passes of smoothing reach in the largest cells.
 pub fn smoothing_length(case: &Case, passes: f64) -> f64 {
     let longest = |axis: &GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     smooth::length(case.grid.order, case.grid.axes.iter().map(longest).fold(0.0, f64::max), passes)
-}
-
-/// Smallest edge (m) of the box around any body.
-pub fn thinnest(case: &Case) -> f64 {
-    let edges = case.bodies.iter().flat_map(|body| {
-        let [lower, upper] = body.region.corners();
-        (0..case.grid.dims()).map(move |axis| upper[axis] - lower[axis])
-    });
-    edges.fold(f64::INFINITY, f64::min)
 }

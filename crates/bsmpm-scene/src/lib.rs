@@ -19,6 +19,7 @@ pub mod surfaces;
 pub mod unit;
 
 mod case;
+mod connected;
 mod difference;
 mod document;
 mod error;

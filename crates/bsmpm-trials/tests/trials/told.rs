@@ -137,3 +137,25 @@ fn the_advice_on_an_elastic_start_is_not_to_make_one() {
     let line = told.stderr.lines().find(|line| line.contains("unbalanced")).unwrap_or_default();
     assert!(line.contains("ramp") && !line.contains("gravity = \"elastic\""), "{}", told.stderr);
 }
+
+/// Four layers that lie on each other are as thick as one body of their height: smoothing along 0.25 m is usual in both.
+#[test]
+fn smoothing_is_judged_by_the_thickness_of_connected_material() {
+    let block = changed(LAYER, "upper = [2.0, 1.5]", "upper = [4.0, 4.5]");
+    let block = format!("{block}\n[stabilisation]\nmethod = \"modified-f-bar\"\n");
+    let of = |lower: f64, upper: f64| format!("box = {{ lower = [0.0, {lower:?}], upper = [4.0, {upper:?}] }}");
+    let body =
+        |lower: f64, upper: f64| format!("[[body]]\nmaterial = \"soil\"\npoints_per_cell = 3\n{}\n", of(lower, upper));
+    let first = "box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }";
+    let whole = changed(&block, first, &of(0.0, 4.0));
+    let more: String = [1.0, 2.0, 3.0].map(|lower| body(lower, lower + 1.0)).concat();
+    let layers = changed(&block, first, &of(0.0, 1.0)) + &more;
+    let thickness = |case: &str| {
+        let scratch = Scratch::with_case(case);
+        scratch.direct(&["case.toml", "-q"]).expect(0);
+        let found = manifest(&scratch.path("case.out")).indicators["smoothing-length"].clone();
+        assert!((found.value / 0.25 - 1.0).abs() < 1e-12, "{found:?}");
+        found.usual[1] / 0.1
+    };
+    assert_eq!([thickness(&whole), thickness(&layers)], [4.0, 4.0]);
+}
