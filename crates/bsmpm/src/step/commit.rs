@@ -246,9 +246,14 @@ fn keep<K: Kinematics<D>, const D: usize>(
     points.dilation = dilation.or(points.dilation.take());
 }
 
+/// Cells by which a point beside a fixed face must have been displaced since the start for its velocity to count. Ground
+/// that vibrates about its place keeps such velocities too, but nothing slides by them.
+const LEAST_PATH: f64 = 0.05;
+
 /// Kinetic energy, J, that points within a cell of a face which holds all components have by their velocities, beyond
 /// that of the motion `du`, m, which they make in the step of the length `dt`, over all ranks: there the field that
-/// moves them goes to zero, and a lumped mass lets them keep what they had.
+/// moves them goes to zero, and a lumped mass lets them keep what they had. Points that have hardly moved since the
+/// start do not count.
 fn beside_fixed<K, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
@@ -264,7 +269,13 @@ fn beside_fixed<K, const D: usize>(
         })
         .collect();
     let v = &points.motion.as_ref().filter(|_| !near.is_empty())?.v;
-    let is_near = |p: &usize| near.iter().any(|(axis, [from, to])| (*from..=*to).contains(&points.x[*p][*axis]));
+    let is_near = |p: &usize| {
+        let path = (points.u[*p] + du[*p]).norm();
+        let counts = |axis: usize, [from, to]: [f64; 2]| {
+            (from..=to).contains(&points.x[*p][axis]) && path > LEAST_PATH * (to - from)
+        };
+        near.iter().any(|(axis, cell)| counts(*axis, *cell))
+    };
     let excess = |p: usize| 0.5 * points.mass[p] * (v[p].norm_squared() - (du[p] / dt).norm_squared());
     let sum: Exact = (0..points.len()).filter(is_near).map(excess).collect();
     Some(halo.total(&[sum])[0])
