@@ -1,24 +1,88 @@
-//! Which bodies are connected: layers and slices that share a face are one piece of material.
+//! Which bodies are connected: layers and slices that share a face are one piece of material, which has a thickness and
+//! may rotate as one.
 
 use crate::case::Case;
 
 /// Parts of the shortest cell by which bodies that share a face may miss each other: rounding.
 const ROUNDING: f64 = 1e-6;
 
+/// Part of the largest angular momentum, with which all bodies would move around the centre of mass, from which on a
+/// piece of material rotates: less is what bodies that meet head-on have by rounding.
+const ROTATING: f64 = 0.1;
+
 impl Case {
     /// Smallest edge, m, of the boxes around the connected pieces of material: bodies whose bounds share a face are one
     /// piece.
     pub fn thinnest(&self) -> f64 {
-        let bounds: Vec<[[f64; 3]; 2]> = self.bodies.iter().map(|body| body.region.corners()).collect();
         let dims = self.grid.dims();
-        let pieces = pieces(&bounds, dims, ROUNDING * self.grid.shortest());
-        let edges = pieces.iter().flat_map(|[lower, upper]| (0..dims).map(|axis| upper[axis] - lower[axis]));
+        let bounds: Vec<[[f64; 3]; 2]> = self.bodies.iter().map(|body| body.region.corners()).collect();
+        let boxes = self.pieces().into_iter().map(|piece| around(&bounds, &piece));
+        let edges = boxes.flat_map(|[lower, upper]| (0..dims).map(move |axis| upper[axis] - lower[axis]));
         edges.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a piece of material rotates at the start: by the spin of a body, or by the different velocities of
+    /// bodies that are connected.
+    pub(crate) fn rotates_at_start(&self) -> bool {
+        self.bodies.iter().any(|body| body.spin.is_some()) || self.pieces().iter().any(|piece| self.rotates(piece))
+    }
+
+    /// Whether the velocities of some bodies have an angular momentum about their centre of mass. The place of a body
+    /// is the middle of its bounds.
+    fn rotates(&self, piece: &[usize]) -> bool {
+        let velocities = || piece.iter().map(|&body| self.bodies[body].velocity.unwrap_or_default());
+        if velocities().all(|velocity| Some(velocity) == velocities().next()) {
+            return false;
+        }
+        let masses: Vec<f64> = piece.iter().map(|&body| self.mass(body)).collect();
+        let places = piece.iter().map(|&body| {
+            let [lower, upper] = self.bodies[body].region.corners();
+            std::array::from_fn(|axis| 0.5 * (lower[axis] + upper[axis]))
+        });
+        let arms = about_mean(places.collect(), &masses);
+        let relative = about_mean(velocities().collect(), &masses);
+        let (mut momentum, mut most) = ([0.0; 3], 0.0);
+        for ((mass, arm), velocity) in masses.iter().zip(&arms).zip(&relative) {
+            let moment = cross(*arm, *velocity);
+            momentum = std::array::from_fn(|axis| momentum[axis] + mass * moment[axis]);
+            most += mass * length(*arm) * length(*velocity);
+        }
+        length(momentum) > ROTATING * most
+    }
+
+    /// Mass of a body, kg, or in a plane kg/m; of one without density its volume.
+    fn mass(&self, body: usize) -> f64 {
+        let body = &self.bodies[body];
+        body.area() * self.materials[body.material].density.unwrap_or(1.0)
+    }
+
+    /// Bodies of every connected piece of material.
+    fn pieces(&self) -> Vec<Vec<usize>> {
+        let bounds: Vec<[[f64; 3]; 2]> = self.bodies.iter().map(|body| body.region.corners()).collect();
+        pieces(&bounds, self.grid.dims(), ROUNDING * self.grid.shortest())
     }
 }
 
-/// Bounds of the connected pieces of bodies with these bounds, in `dims` dimensions.
-fn pieces(bounds: &[[[f64; 3]; 2]], dims: usize, slack: f64) -> Vec<[[f64; 3]; 2]> {
+/// Vectors less their mean, which is weighted by masses.
+fn about_mean(mut vectors: Vec<[f64; 3]>, masses: &[f64]) -> Vec<[f64; 3]> {
+    let total: f64 = masses.iter().sum();
+    for axis in 0..3 {
+        let mean = vectors.iter().zip(masses).map(|(vector, mass)| mass * vector[axis]).sum::<f64>() / total;
+        vectors.iter_mut().for_each(|vector| vector[axis] -= mean);
+    }
+    vectors
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [[1, 2], [2, 0], [0, 1]].map(|[i, j]: [usize; 2]| a[i] * b[j] - a[j] * b[i])
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|along| along * along).sum::<f64>().sqrt()
+}
+
+/// The connected pieces of bodies with these bounds, in `dims` dimensions.
+fn pieces(bounds: &[[[f64; 3]; 2]], dims: usize, slack: f64) -> Vec<Vec<usize>> {
     let mut piece_of: Vec<usize> = (0..bounds.len()).collect();
     for (i, j) in near_pairs(bounds, slack) {
         if share_face(&bounds[i], &bounds[j], dims, slack) {
@@ -26,15 +90,22 @@ fn pieces(bounds: &[[[f64; 3]; 2]], dims: usize, slack: f64) -> Vec<[[f64; 3]; 2
             piece_of[one.max(other)] = one.min(other);
         }
     }
-    let mut pieces: Vec<Option<[[f64; 3]; 2]>> = vec![None; bounds.len()];
-    for (body, [lower, upper]) in bounds.iter().enumerate() {
-        let [least, most] = pieces[root(&piece_of, body)].get_or_insert([*lower, *upper]);
-        for axis in 0..dims {
-            least[axis] = least[axis].min(lower[axis]);
-            most[axis] = most[axis].max(upper[axis]);
+    let mut pieces = vec![Vec::new(); bounds.len()];
+    (0..bounds.len()).for_each(|body| pieces[root(&piece_of, body)].push(body));
+    pieces.retain(|piece| !piece.is_empty());
+    pieces
+}
+
+/// Bounds of some bodies together.
+fn around(bounds: &[[[f64; 3]; 2]], bodies: &[usize]) -> [[f64; 3]; 2] {
+    let mut around = bounds[bodies[0]];
+    for [lower, upper] in bodies.iter().map(|&body| bounds[body]) {
+        for axis in 0..3 {
+            around[0][axis] = around[0][axis].min(lower[axis]);
+            around[1][axis] = around[1][axis].max(upper[axis]);
         }
     }
-    pieces.into_iter().flatten().collect()
+    around
 }
 
 /// The first body of the piece that a body belongs to.
@@ -67,7 +138,7 @@ fn share_face(a: &[[f64; 3]; 2], b: &[[f64; 3]; 2], dims: usize, slack: f64) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::pieces;
+    use super::{around, pieces};
 
     const BOX: [[f64; 3]; 2] = [[0.0, 0.0, 0.0], [1.0, 2.0, 0.0]];
 
@@ -78,13 +149,16 @@ mod tests {
 
     #[test]
     fn bodies_that_share_a_face_are_one_piece() {
-        assert_eq!(pieces(&[moved(2.0, 0.0), BOX, moved(1.0, 1.0)], 2, 1e-9), [[[0.0, 0.0, 0.0], [3.0, 3.0, 0.0]]]);
+        let bounds = [moved(2.0, 0.0), BOX, moved(1.0, 1.0)];
+        let pieces = pieces(&bounds, 2, 1e-9);
+        assert_eq!(pieces, [[0, 1, 2]]);
+        assert_eq!(around(&bounds, &pieces[0]), [[0.0, 0.0, 0.0], [3.0, 3.0, 0.0]]);
     }
 
     #[test]
     fn bodies_that_are_apart_or_share_a_corner_are_pieces_of_their_own() {
         for [x, y] in [[1.1, 0.0], [0.0, 2.1], [1.0, 2.0], [-1.0, 2.0]] {
-            assert_eq!(pieces(&[BOX, moved(x, y)], 2, 1e-9), [BOX, moved(x, y)]);
+            assert_eq!(pieces(&[BOX, moved(x, y)], 2, 1e-9), [[0], [1]]);
         }
     }
 }

@@ -300,10 +300,11 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
     if case.gravity.is_some() && !weighs && case.rigid.iter().all(|rigid| rigid.mass == [0.0; 2]) {
         report.warn("gravity: no body has mass: it does nothing");
     }
-    if case.analysis.mass == MassMatrix::Lumped && case.bodies.iter().any(|body| body.spin.is_some()) {
+    let dynamic = case.analysis.regime == Regime::Dynamic;
+    if dynamic && case.analysis.mass == MassMatrix::Lumped && case.rotates_at_start() {
         report.warn(
-            "a body spins, and analysis.mass is \"lumped\", which slows it (a body of 4 cells lost 12 % of its angular momentum in \
-             .2 rad): give analysis.mass = \"consistent\"",
+            "material rotates at the start, and analysis.mass is \"lumped\", which slows it (a body of 4 cells lost 12 % of its \
+             angular momentum in 0.2 rad). Set analysis.mass = \"consistent\".",
         );
     }
     if case.analysis.regime == Regime::QuasiStatic && !loaded(case) {

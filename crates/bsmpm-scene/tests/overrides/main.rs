@@ -441,10 +441,43 @@ fn ground_that_its_water_cannot_leave_is_warned_of() {
     assert!(found.len() == 1 && found[0].starts_with("body.1: no drain is on it"), "{found:?}");
 }
 
+/// Sixteen bodies of a cell each whose velocities are those of a rotation, of a translation, or of two halves that meet
+/// head-on; and the rotation of bodies that are apart.
+#[test]
+fn a_rotation_by_velocities_is_warned_of_like_a_spin() {
+    let head = "geometry = \"plane-strain\"\nanalysis = { type = \"dynamic\", end = 1, dt = 0.1 }\n\
+                grid = { lower = [0, 0], upper = [8, 8], cell = 0.5, order = \"quadratic\" }\n\
+                [boundary]\nbottom = \"fixed\"\n[material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n";
+    let rotates = |velocity: &dyn Fn(f64, f64) -> [f64; 2], distance: f64| {
+        let body = |k: u32| {
+            let [i, j] = [k % 4, k / 4].map(f64::from);
+            let [x, y] = [2.0 + distance * i, 2.0 + distance * j];
+            let [vx, vy] = velocity(i - 1.5, j - 1.5);
+            format!(
+                "[[body]]\nmaterial = \"m\"\npoints_per_cell = 2\nvelocity = [{vx:?}, {vy:?}]\n\
+                 box = {{ lower = [{x:?}, {y:?}], upper = [{:?}, {:?}] }}\n",
+                x + 0.5,
+                y + 0.5
+            )
+        };
+        let text = format!("{head}{}", (0..16).map(body).collect::<String>());
+        valid(&text, &[]).warnings.iter().any(|warning| warning.contains("material rotates at the start"))
+    };
+    assert!(rotates(&|x, y| [-y, x], 0.5));
+    assert!(rotates(&|x, y| [3.0 - y, x], 0.5));
+    assert!(!rotates(&|_, _| [1.0, 2.0], 0.5));
+    assert!(!rotates(&|x, _| [-x.signum(), 0.0], 0.5));
+    assert!(!rotates(&|x, y| [-y, x], 1.0));
+}
+
 #[test]
 fn a_body_spins_about_its_place() {
     let case = set(FULL, &["body.2.spin={ rate = 2.0, about = [\"1 m\", 2.0] }"]).expect("a valid case");
-    assert!(case.warnings.iter().any(|warning| warning.contains("a body spins")), "{:?}", case.warnings);
+    assert!(
+        case.warnings.iter().any(|warning| warning.contains("material rotates at the start")),
+        "{:?}",
+        case.warnings
+    );
     let mut seen = 0;
     for point in seed::<PlaneStrain, 2>(&case, 0..case.grid.axes[0].cells())
         .filter(|point| point.material == 2 && point.x[0] >= 1.0)
