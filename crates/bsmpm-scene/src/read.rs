@@ -5,6 +5,7 @@ use crate::error::{Error, Origin};
 use crate::report::Report;
 use crate::schema::ROOT;
 use crate::source::{Source, decode};
+use crate::validate::CaseUse;
 use crate::{document, overrides, preset, record, validate};
 
 impl Case {
@@ -21,6 +22,19 @@ impl Case {
     /// # Errors
     /// As [`Case::from_text`]; also if the bytes are too many, binary, UTF-16 or no UTF-8.
     pub fn from_bytes(name: &str, bytes: &[u8], overrides: &[String]) -> Result<Self, Vec<Error>> {
+        Self::read(name, bytes, overrides, CaseUse::Run)
+    }
+
+    /// [`Case::from_bytes`] for the tests of one material point alone, which use the materials of the case and the
+    /// cells for a softening strain: no rule of the run as a whole is checked, and the case cannot be run.
+    ///
+    /// # Errors
+    /// As [`Case::from_bytes`].
+    pub fn of_element_tests(name: &str, bytes: &[u8], overrides: &[String]) -> Result<Self, Vec<Error>> {
+        Self::read(name, bytes, overrides, CaseUse::ElementTests)
+    }
+
+    fn read(name: &str, bytes: &[u8], overrides: &[String], case_use: CaseUse) -> Result<Self, Vec<Error>> {
         let text = decode(name, bytes)?;
         let source = Source::new(name, text);
         let mut report = Report::new(&source, overrides);
@@ -36,7 +50,7 @@ impl Case {
         let filled = preset::fill(&mut document, &source, overrides, &mut report);
         let record = record::read(&ROOT, &document, &mut report);
         let effective = if overrides.is_empty() && !filled { text.to_owned() } else { document.to_toml() };
-        match validate::case(&record, effective, &mut report) {
+        match validate::case(&record, effective, case_use, &mut report) {
             Some(case) if !report.failed() => Ok(case),
             _ => Err(report.into_errors()),
         }

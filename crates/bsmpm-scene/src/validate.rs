@@ -56,8 +56,17 @@ pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 /// Longest edge over the shortest one of cells that count as squares of one size.
 pub(crate) const SQUARE: f64 = 1.01;
 
+/// What a case is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CaseUse {
+    /// A run.
+    Run,
+    /// Tests of one material point.
+    ElementTests,
+}
+
 /// The case that `record` describes; `text` is what was read. `None` after an error.
-pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Option<Case> {
+pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mut Report<'_>) -> Option<Case> {
     solid::refuse(record, report);
     let kind = record.record("analysis").and_then(|analysis| analysis.word("type"));
     let regime = kind.map(AnalysisType::regime);
@@ -145,6 +154,9 @@ pub(crate) fn case(record: &Record, text: String, report: &mut Report<'_>) -> Op
     };
     if report.failed() {
         return None;
+    }
+    if case_use == CaseUse::ElementTests {
+        return Some(case);
     }
     side::of_pressures(&mut case, record, report);
     body::warn_of_overlap(&case, report);

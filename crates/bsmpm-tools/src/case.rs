@@ -20,6 +20,11 @@ pub(crate) fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, 
     Case::from_bytes(&path.display().to_string(), bytes, set).map_err(|errors| Error::bad_case(path, &errors))
 }
 
+/// The same for the tests of one material point alone.
+pub(crate) fn parsed_for_element_tests(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
+    Case::of_element_tests(&path.display().to_string(), bytes, set).map_err(|errors| Error::bad_case(path, &errors))
+}
+
 /// Where what is made of a case is written unless its user says where: its stem with an ending, in the working
 /// directory.
 pub(crate) fn directory(path: &Path, ending: &str) -> PathBuf {

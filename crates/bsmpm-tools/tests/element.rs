@@ -112,3 +112,40 @@ fn a_case_without_tests_says_how_to_write_one() {
     let error = run(&arguments(&case, directory.path()), |_| {}).unwrap_err();
     assert!(error.exit_code() == 2 && error.to_string().contains("[element.NAME]"), "{error}");
 }
+
+/// A test has its own pressure: it asks neither for the stress of the ground at the start nor for its weight.
+#[test]
+fn cam_clay_is_tested_without_a_stress_of_the_ground_at_the_start() {
+    let directory = tempfile::tempdir().unwrap();
+    let case = directory.path().join("case.toml");
+    let text = r#"
+        geometry = "plane-strain"
+        analysis = { type = "quasi-static", steps = 1 }
+        grid = { lower = [0, 0], upper = [1, 1], cell = 0.5, order = "quadratic" }
+        boundary = { bottom = "fixed" }
+        [material.clay]
+        model = "modified-cam-clay"
+        young = "10 MPa"
+        poisson = 0.3
+        kappa = 0.02
+        lambda = 0.12
+        critical_ratio = 1.0
+        preconsolidation = "200 kPa"
+        [[body]]
+        material = "clay"
+        box = { lower = [0, 0], upper = [1, 1] }
+        points_per_cell = 2
+        [element.cd]
+        pressure = "200 kPa"
+        stage = [{ test = "triaxial", compression = 1.5 }]
+    "#;
+    fs::write(&case, text).unwrap();
+    run(&arguments(&case, directory.path()), |_| {}).expect("a test that needs no [initial]");
+    let found = table::read(&directory.path().join("cd.csv")).unwrap();
+    // Drained with M = 1, q = 3 (p - p0) approaches q = M p at q = 3 M p0 / (3 - M) = 300 kPa.
+    let last = *found.get("deviator").unwrap().last().unwrap();
+    assert!((last / 3e5 - 1.0).abs() < 0.01, "{last}");
+    // A run of the case does need them.
+    let error = bsmpm_scene::Case::from_text("case.toml", text, &[]).unwrap_err();
+    assert!(error[0].message.contains("give [initial] k0"), "{error:?}");
+}
