@@ -147,7 +147,7 @@ impl IndicatorState {
         // JSON has no other numbers.
         all.retain(|(_, indicator)| indicator.value.is_finite());
         let advising =
-            |(name, indicator): (&str, Indicator)| (name.to_owned(), indicator.advising(advice::of(name, case)));
+            |(name, indicator): (&str, Indicator)| (name.to_owned(), indicator.advising(&advice::of(name, case)));
         all.into_iter().map(advising).collect()
     }
 

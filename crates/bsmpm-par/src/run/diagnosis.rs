@@ -3,6 +3,7 @@
 use bsmpm::control::Failure;
 use bsmpm::error::{SolveError, StepError};
 use bsmpm::method::Criteria;
+use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::failure::{FailureMeasures, FailureReport};
 use bsmpm_io::manifest::Worst;
 use bsmpm_scene::{Case, GridSpec, Initial};
@@ -98,8 +99,17 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "where the body itself buckles, a dynamic analysis follows it",
         ],
         StepError::EnergyMade { .. } => &[
-            "another [stabilisation]: f-bar, modified-f-bar and f-bar-zhao make energy where material flows without \
-             strength or dilates, consistent-f-bar less, none none",
+            match case.stabilisation {
+                Stabilisation::None => "a smaller [analysis] dt",
+                Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
+                    "stabilisation.method = \"none\": where material flows without strength or dilates, every F-bar method \
+                     makes some energy"
+                }
+                Stabilisation::FBar | Stabilisation::FBarZhao | Stabilisation::ModifiedFBar => {
+                    "another [stabilisation]: f-bar, modified-f-bar and f-bar-zhao make energy where material flows \
+                     without strength or dilates, consistent-f-bar less, none none"
+                }
+            },
             "where bodies meet a face in contact: shorter steps, or [analysis] gamma = 1",
             "a smaller dilation, or some friction; see where it begins: [[history]] quantity = \"energy\", and the frames",
             "the state that is saved is wrong, too: do not go on from it",
