@@ -8,6 +8,7 @@ mod free_field;
 mod grid;
 mod history;
 mod lasting;
+mod leaving;
 mod limit_load;
 mod lines;
 mod load;
@@ -176,6 +177,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     material::band::check(&case, record, report);
     physics::check(&case, record, report);
     lasting::check(&case, record, report);
+    leaving::check(&case, record, report);
     reduction::at_stage(&mut case, record, report);
     free_field::check(&case, record, report);
     water::check(&case, record, report);

@@ -6,11 +6,20 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::validate::shape;
 
+/// Cells from a face within which a body touches it.
+const TOUCHING: f64 = 0.1;
+
 /// Warns of a body that no material can come to, and of half of one on half of the ground.
 pub(super) fn check(case: &Case, rigid: &Rigid, record: &Record, report: &mut Report<'_>) {
     let key = record.path_of(shape::key(record));
     if stays_outside(case, rigid) {
         report.warn(format!("{key}: it lies outside of the grid and does not come into it: it does nothing"));
+    } else if let Some((face, distance)) = touched(case, rigid) {
+        report.warn(format!(
+            "{key}: it lies {distance:.3} m from the face {} of the grid at the start and is pushed towards it. Faces do not \
+             stop rigid bodies: it leaves the grid, and no soil acts on it there. Enlarge the grid there.",
+            face.side(case.geometry)
+        ));
     } else if rigid.free.contains(&true)
         && let Some(face) = cut(case, rigid)
     {
@@ -56,6 +65,29 @@ fn cut(case: &Case, rigid: &Rigid) -> Option<Face> {
         let is_axis = case.geometry == Geometry::Axisymmetric && face.axis == 0;
         let rolls = case.boundary[face.axis][usize::from(face.upper)] == Support::Roller;
         rolls && !is_axis && least < bound[face.axis] - slack && most > bound[face.axis] + slack
+    })
+}
+
+/// The first face within a tenth of a cell of which a body in the plane lies, and to which a free motion goes by what moves it at
+/// the start: its velocity, else its force and its weight; and the distance to it, m.
+fn touched(case: &Case, rigid: &Rigid) -> Option<(Face, f64)> {
+    if matches!(rigid.shape, RigidShape::InSpace(_)) {
+        return None;
+    }
+    let mut faces = (0..2).filter(|&axis| rigid.free[axis]).flat_map(|axis| [false, true].map(|upper| (axis, upper)));
+    faces.find_map(|(axis, upper)| {
+        let [least, most] = extent(rigid, axis);
+        let (distance, sign) = match upper {
+            true => (case.grid.upper()[axis] - most, 1.0),
+            false => (least - case.grid.lower()[axis], -1.0),
+        };
+        let along = &case.grid.axes[axis];
+        let cell = along.cell(if upper { along.cells() - 1 } else { 0 });
+        let weight = case.gravity.as_ref().map_or(0.0, |gravity| rigid.mass[0] * gravity.acceleration[axis]);
+        let drive = if rigid.velocity[axis] != 0.0 { rigid.velocity[axis] } else { rigid.force[axis] + weight };
+        let slack = OVERLAP * case.grid.shortest();
+        ((-slack..TOUCHING * cell).contains(&distance) && sign * drive > 0.0)
+            .then_some((Face { axis, upper }, distance.max(0.0)))
     })
 }
 

@@ -1,0 +1,125 @@
+//! Bodies that lie at an open face of the grid at the start and move out of it: the run ends there with exit code 81.
+
+use super::physics;
+use crate::case::{Body, Case, Face, Geometry, Support};
+use crate::record::Record;
+use crate::region::Region;
+use crate::report::Report;
+use bsmpm::model::Regime;
+
+/// Times between start and end at which the place of a body is tried.
+const SAMPLES: usize = 100;
+
+/// Motion of a body at the start, as that of a rigid body to which nothing happens.
+struct FreeMotion<'a> {
+    body: &'a Body,
+    /// m/s2  of gravity
+    acceleration: [f64; 3],
+    /// m  outermost points, in the case's coordinates: half of their spacing inside of the corners
+    points: Vec<[f64; 3]>,
+}
+
+/// When and how far a body goes beyond a face.
+#[derive(Clone, Copy)]
+struct Exit {
+    time: f64,      // s
+    overshoot: f64, // m  the farthest
+}
+
+/// Warns of bodies in dynamic analysis that lie within a cell of a free face, are held by nothing along its normal, and
+/// leave the grid there before the end of the run unless something stops them.
+pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+    if case.analysis.regime != Regime::Dynamic {
+        return;
+    }
+    let faces = (0..case.grid.dims()).flat_map(|axis| [false, true].map(|upper| Face { axis, upper }));
+    let is_open = |face: &Face| {
+        let is_axis = case.geometry == Geometry::Axisymmetric && face.axis == 0;
+        let is_free = case.boundary[face.axis][usize::from(face.upper)] == Support::Free;
+        !is_axis && is_free && !physics::holds_at_rest(case, face.axis, None)
+    };
+    let open: Vec<Face> = faces.filter(is_open).collect();
+    for (body, record) in case.bodies.iter().zip(root.records("body")) {
+        let motion = FreeMotion::of(case, body);
+        for &face in &open {
+            let Face { axis, upper } = face;
+            let along = &case.grid.axes[axis];
+            let cell = along.cell(if upper { along.cells() - 1 } else { 0 });
+            let distance = -motion.overhang(case, face);
+            if distance >= cell {
+                continue;
+            }
+            let Some(exit) = motion.exit(case, face) else { continue };
+            let side = face.side(case.geometry);
+            report.warn(format!(
+                "{}: it lies {:.3} m from the free face {side} of the grid. Moving freely it leaves the grid at about t = \
+                 {:.3} s (exit code 81). Enlarge the grid there by {:.3} m, or support that face.",
+                record.path,
+                distance.max(0.0),
+                exit.time,
+                exit.overshoot
+            ));
+        }
+    }
+}
+
+impl<'a> FreeMotion<'a> {
+    fn of(case: &Case, body: &'a Body) -> Self {
+        let acceleration = case.gravity.as_ref().map_or([0.0; 3], |gravity| gravity.acceleration);
+        let (lower, bounds) = (case.grid.lower(), body.region.corners());
+        let corners: Vec<[f64; 3]> = match &body.region {
+            // Of a solid the bounds move without turning.
+            Region::Solid(_) => bounds.to_vec(),
+            region => {
+                let (edges, _) = region.edges(&case.grid);
+                let ends = edges.iter().filter(|edge| edge.shape == 0).flat_map(|edge| [edge.a, edge.b]);
+                ends.map(|[x, y]| [x + lower[0], y + lower[1], 0.0]).collect()
+            }
+        };
+        let inset = 0.5 * case.grid.shortest() / body.points_per_cell as f64;
+        let inside = |at: [f64; 3]| {
+            std::array::from_fn(|axis| {
+                let middle = 0.5 * (bounds[0][axis] + bounds[1][axis]);
+                at[axis] - (at[axis] - middle).clamp(-inset, inset)
+            })
+        };
+        Self { body, acceleration, points: corners.into_iter().map(inside).collect() }
+    }
+
+    /// Distance, m, by which the body is beyond a face at the start; negative inside.
+    fn overhang(&self, case: &Case, face: Face) -> f64 {
+        let bound = self.body.region.corners()[usize::from(face.upper)][face.axis];
+        outward(case, face, bound)
+    }
+
+    /// Farthest distance, m, by which a point is beyond a face at a time.
+    fn beyond(&self, case: &Case, face: Face, t: f64) -> f64 {
+        let axis = face.axis;
+        let velocity = self.body.velocity.map_or(0.0, |velocity| velocity[axis]);
+        let path = velocity * t + 0.5 * self.acceleration[axis] * t * t;
+        let spin = self.body.spin.filter(|_| case.grid.dims() == 2);
+        let turned = |at: &[f64; 3]| match spin {
+            Some([rate, about]) => {
+                let arm = [at[0] - about[0], at[1] - about[1]];
+                let (sin, cos) = (rate[2] * t).sin_cos();
+                [about[0] + cos * arm[0] - sin * arm[1], about[1] + sin * arm[0] + cos * arm[1], at[2]]
+            }
+            None => *at,
+        };
+        let reach = self.points.iter().map(|at| outward(case, face, turned(at)[axis] + path));
+        reach.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// When a point is beyond the face, and how far the farthest comes, if that is before the end.
+    fn exit(&self, case: &Case, face: Face) -> Option<Exit> {
+        let time = |k: usize| case.analysis.end * k as f64 / SAMPLES as f64;
+        let beyond: Vec<f64> = (1..=SAMPLES).map(|k| self.beyond(case, face, time(k))).collect();
+        let first = beyond.iter().position(|beyond| *beyond > 0.0)?;
+        Some(Exit { time: time(first + 1), overshoot: beyond.into_iter().fold(0.0, f64::max) })
+    }
+}
+
+/// Distance, m, by which a place along the normal of a face is beyond it.
+fn outward(case: &Case, face: Face, at: f64) -> f64 {
+    if face.upper { at - case.grid.upper()[face.axis] } else { case.grid.lower()[face.axis] - at }
+}
