@@ -62,7 +62,7 @@ pub struct CompareArguments {
     /// repeatable
     #[arg(long = "reference", value_name = "FILE")]
     pub references: Vec<PathBuf>,
-    /// Only the last row of every run; runs of one label are one curve
+    /// Only the last row of every run; runs of one label are one curve, and a row each in the table
     #[arg(long)]
     pub last: bool,
     /// The x of a run, once for every DIR, instead of a column
