@@ -1,6 +1,6 @@
 //! Places of a case from the grid's lower corner.
 
-use bsmpm_scene::{GridAxis, GridSpec};
+use bsmpm_scene::{Case, GridAxis, GridSpec};
 
 fn axis(lower: f64, cell: f64, cells: usize) -> GridAxis {
     GridAxis::Uniform { lower, cell, cells }
@@ -28,4 +28,21 @@ fn a_place_on_a_face_has_a_cell_wherever_the_grid_starts() {
         }
     }
     assert!(missed > 100, "differences that miss the grid: {missed}");
+}
+
+#[test]
+fn splines_are_quadratic_unless_an_order_is_given_and_the_choice_is_noted() {
+    let case = |order: &str| {
+        let text = format!(
+            "geometry = \"plane-strain\"\nanalysis = {{ type = \"quasi-static\", steps = 1 }}\n\
+             grid = {{ lower = [0, 0], upper = [2, 2], cell = 1{order} }}\nboundary = {{ bottom = \"fixed\" }}\n\
+             [material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\n\
+             [[body]]\nmaterial = \"m\"\npoints_per_cell = 2\nbox = {{ lower = [0, 0], upper = [2, 1] }}\n"
+        );
+        Case::from_text("case.toml", &text, &[]).expect("a valid case")
+    };
+    let notes = |case: &Case| case.notes.iter().filter(|note| note.key == "grid.order").count();
+    let [absent, given, cubic] = ["", ", order = \"quadratic\"", ", order = \"cubic\""].map(case);
+    assert_eq!([absent.grid.order, given.grid.order, cubic.grid.order], [2, 2, 3]);
+    assert_eq!([notes(&absent), notes(&given), notes(&cubic)], [1, 0, 0]);
 }

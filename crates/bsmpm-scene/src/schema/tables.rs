@@ -109,7 +109,7 @@ static GRID: Table = Table {
         key("upper", Vector(In::Length, Range::ANY), Optional, "upper corner; a free face moves out to a whole cell"),
         key("cell", Either(In::Length, Range::POSITIVE), Optional, "edge of the cells, or one along each axis"),
         key("knots", Kind::Table(&KNOTS), Optional, "explicit breakpoints instead of cell"),
-        key("order", Choice(Order::WORDS), Required, "order of the B-splines"),
+        key("order", Choice(Order::WORDS), Default("\"quadratic\""), "order of the B-splines"),
         key(
             "c0_lines",
             Choice(C0Lines::WORDS),

@@ -64,7 +64,6 @@ pub const LANGUAGE: &[Row] = &[
     row("model    = \"mohr-coulomb\"\n", "", "material.sand.model", "missing; it is one of \"hencky\"").up(1),
     row("poisson  = 0.3\n", "", "material.sand.poisson", "missing; it is a number").up(3),
     row("acceleration = [0.0, -9.81]\n", "", "gravity.acceleration", "missing").up(1),
-    row("order = \"quadratic\"\n", "", "grid.order", "missing").up(4),
     row("order = \"quadratic\"", "order = \"quartic\"", "grid.order", "expected one of"),
     row("method = \"f-bar\"", "", "stabilisation.method", "missing").up(1),
     row("poisson  = 0.3", "poisson = 0.3\npoisson = 0.2", "", "no valid TOML: duplicate key").down(1),
