@@ -31,6 +31,7 @@ mod rigid;
 mod room;
 mod saturated_column;
 mod scenes;
+mod scripts;
 mod settled_start;
 mod signals;
 mod solid;

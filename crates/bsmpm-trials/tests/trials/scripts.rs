@@ -1,0 +1,47 @@
+//! The scripts from outside, with programs of the system replaced.
+
+use crate::support::Scratch;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::Command;
+
+/// Writes a program of a directory.
+fn program(directory: &Path, name: &str, body: &str) {
+    let path = directory.join(name);
+    std::fs::write(&path, format!("#!/bin/sh\n{body}\n")).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+/// What `scripts/setup` says and its exit code where no package is installed, and apt-get ends with `code` after it has
+/// printed what PETSc's package does at its first installation.
+fn setup(code: i32) -> (String, Option<i32>) {
+    let scratch = Scratch::new();
+    let programs = scratch.path("programs");
+    std::fs::create_dir(&programs).unwrap();
+    program(&programs, "dpkg-query", "exit 1");
+    program(&programs, "sudo", "[ \"$1\" = -n ] && shift; exec \"$@\"");
+    let says = "echo 'update-alternatives: error: no alternatives for petsc' >&2; echo 'E: an error that matters' >&2";
+    let apt = format!("case \"$*\" in *--simulate*) exit 0;; *update*) exit 0;; esac; {says}; exit {code}");
+    program(&programs, "apt-get", &apt);
+    let path = std::env::var("PATH").unwrap();
+    let output = Command::new("bash")
+        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/setup"))
+        .env("PATH", format!("{}:{path}", programs.display()))
+        .output()
+        .unwrap();
+    (String::from_utf8_lossy(&output.stderr).into_owned(), output.status.code())
+}
+
+/// PETSc's libraries are there, as the tests were built with them.
+#[test]
+fn setup_says_nothing_of_alternatives_that_a_package_makes_itself() {
+    for code in [0, 100] {
+        let (said, ended) = setup(code);
+        assert!(ended == Some(0) && !said.contains("update-alternatives"), "{ended:?}: {said}");
+        // A user who is not root and has the libraries installs nothing.
+        let installs = said.contains("installing gcc");
+        let errors = said.matches("E: an error that matters").count();
+        let expected = if code == 0 { 1 } else { 2 };
+        assert!(!installs || errors == expected, "{said}");
+    }
+}
