@@ -20,7 +20,7 @@ use bsmpm_scene::model::vector;
 use bsmpm_scene::surfaces::{self, DrainPlace, Gauge};
 use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{Case, GridSpec, History, Made, Quantity, Stage};
-use place::{PoreAt, at_followed, at_surface, both, displacement, followed_place, pore, section};
+use place::{FollowedPoint, PoreAt, at_followed, at_surface, both, displacement, followed_place, pore, section};
 use reported::{at_face, contact, rigid};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
@@ -217,9 +217,10 @@ impl<const D: usize> Recorder<D> {
                     contact(history.quantity.measurement(), at_face(model, *face, report), report.dt)
                 }
                 Quantity::PorePressure { at, surface } | Quantity::Pore { at, surface, .. } => {
+                    let place = vector::<D, _>(*at) - self.lower;
                     let read = match surface {
-                        true => PoreAt::Surface(vector::<D, _>(*at) - self.lower),
-                        false => PoreAt::Point(self.followed[number].unwrap_or(u64::MAX)),
+                        true => PoreAt::Surface(place),
+                        false => PoreAt::Point(FollowedPoint::of(self.followed[number], place, &self.grid)),
                     };
                     let water = PoreWater::of(model, points, t);
                     pore((history.quantity.measurement(), water), read, (model, points), halo)?
@@ -319,7 +320,10 @@ impl<const D: usize> Recorder<D> {
                 let datum = |axis: usize| self.datum.get(number).map_or(0.0, |datum| datum[axis]);
                 (0..D).map(|axis| total[axis] - datum(axis)).collect()
             }
-            quantity => at_followed(quantity, followed.unwrap_or(u64::MAX), points, halo),
+            quantity => {
+                let at = followed_place(quantity).map_or(Vector::zeros(), |at| vector::<D, _>(at) - self.lower);
+                at_followed(quantity, FollowedPoint::of(followed, at, &self.grid), (model, points), halo)
+            }
         })
     }
 

@@ -11,9 +11,9 @@ use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
 use bsmpm::water::observed::PoreWater;
-use bsmpm_scene::Quantity;
 use bsmpm_scene::model::vector;
 use bsmpm_scene::words::Measurement;
+use bsmpm_scene::{GridSpec, Quantity};
 
 /// The place of a history that follows the point nearest to it.
 pub(super) fn followed_place(quantity: &Quantity) -> Option<[f64; 3]> {
@@ -37,17 +37,55 @@ pub(super) fn displacement<const D: usize>(
     observe::at_point(points, id, halo, |p| observe::displacement(points, p, &place).into())
 }
 
-/// A quantity of the point `id`, zero where there is none; of other quantities there is none.
-pub(super) fn at_followed<const D: usize>(
+/// The point that a history follows.
+#[derive(Clone, Copy)]
+pub(super) struct FollowedPoint<const D: usize> {
+    /// its id
+    pub(super) id: u64,
+    /// m  the place that it is the nearest one to, from the grid's lower corner, where the value is that of the place;
+    /// `None`: it is that of the point
+    pub(super) place: Option<Vector<D>>,
+}
+
+impl<const D: usize> FollowedPoint<D> {
+    /// Of a history at `at` (m, from the grid's lower corner), whose nearest point is `id`. In a grid whose cells
+    /// differ in length points may lie far from the place.
+    pub(super) fn of(id: Option<u64>, at: Vector<D>, grid: &GridSpec) -> Self {
+        let is_graded = grid.axes.iter().any(|axis| axis.longest() > EQUAL * axis.shortest());
+        Self { id: id.unwrap_or(u64::MAX), place: id.filter(|_| is_graded).map(|_| at) }
+    }
+
+    /// A field there: at the place, if it is in material, else of the point; zero where there is no such point.
+    fn value<K: Kinematics<D>, const C: usize>(
+        self,
+        (model, points): (&Model<K, D>, &Points<D>),
+        field: impl Fn(usize) -> [f64; C],
+        halo: &dyn Halo,
+    ) -> [f64; C] {
+        let at_place = |at: Vector<D>| {
+            place::values::<K, D, _>(&model.grid, points, (&[at], Configuration::Initial), &field, halo)[0]
+        };
+        // A stage may have removed the body of the point, and another one be there.
+        let is_there = |_: &Vector<D>| observe::at_point(points, self.id, halo, |_| [1.0]) == [1.0];
+        let found = self.place.filter(is_there).and_then(at_place);
+        found.unwrap_or_else(|| observe::at_point(points, self.id, halo, &field))
+    }
+}
+
+/// Longest over shortest cell along an axis up to which cells count as equal.
+const EQUAL: f64 = 1.0 + 1e-6;
+
+/// A quantity of a followed point, zero where there is none; of other quantities there is none.
+pub(super) fn at_followed<K: Kinematics<D>, const D: usize>(
     quantity: &Quantity,
-    id: u64,
-    points: &Points<D>,
+    followed: FollowedPoint<D>,
+    (model, points): (&Model<K, D>, &Points<D>),
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());
     match quantity {
-        Quantity::Velocity { .. } => observe::at_point(points, id, halo, velocity).to_vec(),
-        Quantity::Stress { .. } => shown::<D>(&observe::at_point(points, id, halo, |p| points.sigma.at(p).0)),
+        Quantity::Velocity { .. } => followed.value((model, points), velocity, halo).to_vec(),
+        Quantity::Stress { .. } => shown::<D>(&followed.value((model, points), |p| points.sigma.at(p).0, halo)),
         _ => Vec::new(),
     }
 }
@@ -67,8 +105,8 @@ pub(super) fn at_surface<K: Kinematics<D>, const D: usize, const C: usize>(
 /// Where pore water is read.
 #[derive(Clone, Copy)]
 pub(super) enum PoreAt<const D: usize> {
-    /// The point of an id.
-    Point(u64),
+    /// A point that is followed.
+    Point(FollowedPoint<D>),
     /// m  the material place that was there, from the grid's lower corner, before anything moved
     Surface(Vector<D>),
 }
@@ -83,7 +121,7 @@ pub(super) fn pore<K: Kinematics<D>, const D: usize>(
     let number = |of: &dyn Fn(PoreWater<'_, D>, usize) -> f64| {
         let field = |p: usize| [water.map_or(0.0, |water| of(water, p))];
         match read {
-            PoreAt::Point(id) => observe::at_point(points, id, halo, field).to_vec(),
+            PoreAt::Point(followed) => followed.value((model, points), field, halo).to_vec(),
             PoreAt::Surface(at) => at_surface((model, points), at, field, halo),
         }
     };
@@ -92,7 +130,7 @@ pub(super) fn pore<K: Kinematics<D>, const D: usize>(
             let fluxes = water.map(|water| water.fluxes::<K>(&model.grid, halo)).transpose()?;
             let flux = |p: usize| fluxes.as_ref().map_or([0.0; D], |fluxes| fluxes[p].into());
             match read {
-                PoreAt::Point(id) => observe::at_point(points, id, halo, flux).to_vec(),
+                PoreAt::Point(followed) => followed.value((model, points), flux, halo).to_vec(),
                 PoreAt::Surface(at) => at_surface((model, points), at, flux, halo),
             }
         }

@@ -114,7 +114,8 @@ pub(super) static HISTORY: Table = Table {
             Flag,
             Optional,
             "of velocity, stress and what the water of a place has: of the place itself, by the plane through the points \
-             around it, also where these are on one side; of the nearest point unless given",
+             around it, also where these are on one side; unless given of the nearest point, \
+             or where cells differ in length of the place inside of material",
         ),
         key(
             "box",
