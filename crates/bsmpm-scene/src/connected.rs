@@ -83,15 +83,19 @@ fn length(vector: [f64; 3]) -> f64 {
 
 /// The connected pieces of bodies with these bounds, in `dims` dimensions.
 fn pieces(bounds: &[[[f64; 3]; 2]], dims: usize, slack: f64) -> Vec<Vec<usize>> {
-    let mut piece_of: Vec<usize> = (0..bounds.len()).collect();
-    for (i, j) in near_pairs(bounds, slack) {
-        if share_face(&bounds[i], &bounds[j], dims, slack) {
-            let [one, other] = [i, j].map(|body| root(&piece_of, body));
-            piece_of[one.max(other)] = one.min(other);
-        }
+    let touching = near_pairs(bounds, slack).filter(|&(i, j)| share_face(&bounds[i], &bounds[j], dims, slack));
+    pieces_of_pairs(bounds.len(), touching.map(|(i, j)| [i, j]))
+}
+
+/// The pieces that so many bodies make of which these pairs are connected.
+pub(crate) fn pieces_of_pairs(count: usize, connected: impl Iterator<Item = [usize; 2]>) -> Vec<Vec<usize>> {
+    let mut piece_of: Vec<usize> = (0..count).collect();
+    for pair in connected {
+        let [one, other] = pair.map(|body| root(&piece_of, body));
+        piece_of[one.max(other)] = one.min(other);
     }
-    let mut pieces = vec![Vec::new(); bounds.len()];
-    (0..bounds.len()).for_each(|body| pieces[root(&piece_of, body)].push(body));
+    let mut pieces = vec![Vec::new(); count];
+    (0..count).for_each(|body| pieces[root(&piece_of, body)].push(body));
     pieces.retain(|piece| !piece.is_empty());
     pieces
 }

@@ -5,6 +5,7 @@ mod body;
 mod element;
 mod flow;
 mod free_field;
+mod gap;
 mod grid;
 mod history;
 mod lasting;
@@ -161,6 +162,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     }
     side::of_pressures(&mut case, record, report);
     body::warn_of_overlap(&case, report);
+    gap::check(&case, report);
     solver::of_case(&mut case, record, report);
     solver::warn_of_background(&case, report);
     solid::check(&case, record, report);

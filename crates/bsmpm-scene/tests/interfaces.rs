@@ -52,3 +52,70 @@ fn interfaces_beyond_what_was_shown_are_told_of() {
         );
     }
 }
+
+/// A quasi-static case in cells of 1 m with these shapes as bodies.
+fn shapes(shapes: &[&str]) -> Vec<String> {
+    let mut text = "geometry = \"plane-strain\"\nanalysis = { type = \"quasi-static\", steps = 1 }\n\
+                    grid = { lower = [0, 0], upper = [12, 12], cell = 1, order = \"quadratic\" }\n\
+                    boundary = { bottom = \"fixed\", left = \"fixed\" }\n\
+                    [material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\n"
+        .to_owned();
+    for shape in shapes {
+        text += &format!("[[body]]\nmaterial = \"m\"\npoints_per_cell = 4\n{shape}\n");
+    }
+    let warnings = Case::from_text("case.toml", &text, &[]).expect("valid").warnings;
+    warnings.into_iter().filter(|warning| warning.contains("before they touch")).collect()
+}
+
+#[test]
+fn bodies_that_are_apart_by_less_than_a_cell_are_warned_of() {
+    const GROUND: &str = "box = { lower = [0, 0], upper = [8, 2] }";
+    let block = |lower: f64| format!("box = {{ lower = [2, {lower:?}], upper = [5, {:?}] }}", lower + 2.0);
+    let found = shapes(&[GROUND, &block(2.25)]);
+    assert!(
+        found.len() == 1 && found[0].starts_with("body.0 and body.1 are 2.500e-1 m apart, 0.25 cells"),
+        "{found:?}"
+    );
+    // Touching, a cell away or farther, and overlapping; beside and diagonally a cell away.
+    for lower in [2.0, 2.0 + 1e-9, 3.0, 5.0, 1.5] {
+        assert_eq!(shapes(&[GROUND, &block(lower)]), [""; 0], "{lower}");
+    }
+    assert_eq!(shapes(&[GROUND, "box = { lower = [9, 0], upper = [10, 2] }"]), [""; 0]);
+    assert_eq!(shapes(&[GROUND, "box = { lower = [8.5, 2.5], upper = [10, 4] }"]).len(), 1);
+    assert_eq!(shapes(&[GROUND, "box = { lower = [9, 2.5], upper = [10, 4] }"]), [""; 0]);
+    // A layer that is thinner than a cell fills the gap.
+    let layer = "box = { lower = [0, 2], upper = [8, 2.5] }";
+    assert_eq!(shapes(&[GROUND, "box = { lower = [0, 2.5], upper = [8, 4] }", layer]), [""; 0]);
+    // Several gaps are one line, the narrowest first.
+    let blocks = [block(2.5), "box = { lower = [5.125, 2.5], upper = [7, 4] }".to_owned()];
+    let found = shapes(&[GROUND, &blocks[0], &blocks[1]]);
+    assert!(
+        found.len() == 1 && found[0].starts_with("body.1 and body.2 (and 2 more pairs) are 1.250e-1 m"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn the_gap_of_other_shapes_is_that_between_their_edges() {
+    let slope = "polygon = [[0, 0], [8, 0], [0, 8]]";
+    let circle = |center: f64| format!("circle = {{ center = [{center:?}, {center:?}], radius = 1 }}");
+    // The slope's surface is x + y = 8.
+    let apart = |gap: f64| 4.0 + (1.0 + gap) / std::f64::consts::SQRT_2;
+    let found = shapes(&[slope, &circle(apart(0.25))]);
+    assert!(found.len() == 1 && found[0].contains("are 2.500e-1 m apart"), "{found:?}");
+    for gap in [0.0, 1.01, -0.5] {
+        assert_eq!(shapes(&[slope, &circle(apart(gap))]), [""; 0], "{gap}");
+    }
+    let above = "polygon = [[0, 8], [8, 0], [8, 8]]";
+    assert_eq!(shapes(&[slope, above]), [""; 0]);
+    let circles = |x: f64| {
+        [
+            "circle = { center = [2, 4], radius = 1 }".to_owned(),
+            format!("circle = {{ center = [{x:?}, 4], radius = 1 }}"),
+        ]
+    };
+    for (x, warned) in [(4.5, 1), (5.5, 0)] {
+        let [one, other] = circles(x);
+        assert_eq!(shapes(&["box = { lower = [0, 0], upper = [8, 1] }", &one, &other]).len(), warned, "{x}");
+    }
+}
