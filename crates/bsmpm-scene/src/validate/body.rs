@@ -83,7 +83,8 @@ fn read(
             record.path
         ));
     }
-    let region = shape::region((record, root.word("geometry")?), (grid, points_per_cell), report);
+    let boundary = super::boundary(root);
+    let region = shape::region((record, root.word("geometry")?), (grid, points_per_cell), boundary, report);
     let velocity = record.vector("velocity");
     let spin = match record.record("spin") {
         Some(spin) => Some(turning(spin, root.word("geometry")?, report)?),

@@ -7,7 +7,7 @@ use crate::report::Report;
 use crate::words::Side;
 
 /// Parts of a cell by which a place may lie beyond the grid: rounding.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 /// Places along a line at which bodies are looked for.
 const SAMPLES: usize = 101;
 /// Places along either edge of a rectangle in space at which bodies are looked for.

@@ -5,7 +5,7 @@ mod solid;
 pub(super) use solid::{cuboid, key, raster};
 
 use super::place;
-use crate::case::RigidShape;
+use crate::case::{Face, RigidShape, Support};
 use crate::error::Origin;
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -50,27 +50,77 @@ impl BodyShape {
     }
 }
 
+/// What of a body is beyond planes of symmetry: faces with rollers in the middle of its bounds. It is cut off. A body that
+/// reaches over a face by another distance is not symmetric about it, and refused.
+struct BeyondSymmetry<const D: usize> {
+    /// m  lower and upper corners of what is cut off
+    boxes: Vec<[[f64; D]; 2]>,
+    faces: Vec<Face>,
+}
+
+impl<const D: usize> BeyondSymmetry<D> {
+    /// Of a shape with these bounds, and the bounds of what is left of it where the case itself cuts something off, m.
+    fn of([lower, upper]: [[f64; D]; 2], left: [[f64; D]; 2], boundary: [[Support; 2]; 3], grid: &GridSpec) -> Self {
+        let mut beyond = Self { boxes: Vec::new(), faces: Vec::new() };
+        let [grid_lower, grid_upper] = [grid.lower(), grid.upper()];
+        for axis in 0..D {
+            let slack = place::ROUNDING * grid.axes[axis].shortest();
+            for (is_upper, limit) in [(false, grid_lower[axis]), (true, grid_upper[axis])] {
+                let is_roller = boundary[axis][usize::from(is_upper)] == Support::Roller;
+                let is_middle = (0.5 * (lower[axis] + upper[axis]) - limit).abs() <= slack;
+                let reaches = if is_upper { left[1][axis] > limit + slack } else { left[0][axis] < limit - slack };
+                if !(is_roller && is_middle && reaches) {
+                    continue;
+                }
+                // Farther than the body, so that no edge of the box lies on one of the body but at the face.
+                let size: [f64; D] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
+                let mut corners = [-1.0, 1.0].map(|sign| {
+                    let bound = if sign < 0.0 { lower } else { upper };
+                    std::array::from_fn(|axis| bound[axis] + sign * size[axis])
+                });
+                corners[usize::from(!is_upper)][axis] = limit;
+                beyond.boxes.push(corners);
+                beyond.faces.push(Face { axis, upper: is_upper });
+            }
+        }
+        beyond
+    }
+
+    /// Notes the faces at which the body is cut.
+    fn note(&self, body: &Record, geometry: Geometry, report: &mut Report<'_>) {
+        let sides: Vec<String> = self.faces.iter().map(|face| face.side(geometry).to_string()).collect();
+        let value = format!("cut at {}", sides.join(", "));
+        report.note(body.path_of(key(body)), value, "a face with a roller is a plane of symmetry of the body");
+    }
+}
+
 /// What a body fills, with `points_per_cell` along an axis; place and size are checked only if the grid is valid.
 pub(super) fn region(
     (body, geometry): (&Record, Geometry),
     (grid, points_per_cell): (Option<&GridSpec>, Option<usize>),
+    boundary: Option<[[Support; 2]; 3]>,
     report: &mut Report<'_>,
 ) -> Option<Region> {
     if geometry == Geometry::Solid {
-        return solid::region(body, (grid, points_per_cell), report);
+        return solid::region(body, (grid, points_per_cell), boundary, report);
     }
     let whole = read(body, report);
     let cut: Option<Vec<BodyShape>> = body.records("subtract").iter().map(|record| read(record, report)).collect();
-    let (whole, cut) = (whole?, cut?);
+    let (mut whole, mut cut) = (whole?, cut?);
     if body.gives("subtract") && cut.len() != body.records("subtract").len() {
         return None;
     }
     let grid = grid?;
-    let boxes = cut.iter().filter_map(|shape| match shape {
-        BodyShape::Box { lower, upper } => Some([*lower, *upper]),
-        BodyShape::Polygon(_) | BodyShape::Circle { .. } => None,
-    });
-    let bounds = region::left_of_box(whole.bounds(), &boxes.collect::<Vec<_>>());
+    let left = region::left_of_box(whole.bounds(), &boxes_of(&cut));
+    let beyond = BeyondSymmetry::of(whole.bounds(), left, boundary?, grid);
+    if !beyond.boxes.is_empty() {
+        match &mut whole {
+            BodyShape::Box { lower, upper } => [*lower, *upper] = region::left_of_box([*lower, *upper], &beyond.boxes),
+            _ => cut.extend(beyond.boxes.iter().map(|&[lower, upper]| BodyShape::Box { lower, upper })),
+        }
+        beyond.note(body, geometry, report);
+    }
+    let bounds = region::left_of_box(whole.bounds(), &boxes_of(&cut));
     inside((&whole, bounds), body, grid, report)?;
     if let (BodyShape::Box { lower, upper }, true) = (&whole, cut.is_empty()) {
         return Some(Region::Box { lower: *lower, upper: *upper });
@@ -84,6 +134,15 @@ pub(super) fn region(
             None
         }
     }
+}
+
+/// Lower and upper corners of the boxes among shapes.
+fn boxes_of(shapes: &[BodyShape]) -> Vec<[[f64; 2]; 2]> {
+    let corners = |shape: &BodyShape| match shape {
+        BodyShape::Box { lower, upper } => Some([*lower, *upper]),
+        BodyShape::Polygon(_) | BodyShape::Circle { .. } => None,
+    };
+    shapes.iter().filter_map(corners).collect()
 }
 
 /// The shape of a rigid body, which may reach beyond the grid.

@@ -1,12 +1,13 @@
 //! Shapes in space.
 
 use super::super::place;
-use super::BodyShape;
+use super::{BeyondSymmetry, BodyShape};
+use crate::case::Support;
 use crate::grid::GridSpec;
 use crate::record::{ListRow, Record};
-use crate::region::{Raster, Region, Section, SolidShape, Surface, Volume, solid_bounds};
+use crate::region::{Raster, Region, Section, SolidShape, Surface, Volume, left_of_box, solid_bounds};
 use crate::report::Report;
-use crate::words::Axis;
+use crate::words::{Axis, Geometry};
 
 /// Factor of the volumes in cells that are cut, less 1, above which a body is warned of. At 2 or 3 points along an axis
 /// walls of a fifth of a cell have .04 at most, of a hundredth .5 to .9; spheres of any size .06.
@@ -16,13 +17,22 @@ const SCALED: f64 = 0.1;
 pub(super) fn region(
     body: &Record,
     (grid, points_per_cell): (Option<&GridSpec>, Option<usize>),
+    boundary: Option<[[Support; 2]; 3]>,
     report: &mut Report<'_>,
 ) -> Option<Region> {
     let whole = read(body, report);
     let cut: Option<Vec<SolidShape>> = body.records("subtract").iter().map(|record| read(record, report)).collect();
-    let (whole, cut, grid, key) = (whole?, cut?, grid?, key(body));
+    let (mut whole, mut cut, grid, key) = (whole?, cut?, grid?, key(body));
     if body.gives("subtract") && cut.len() != body.records("subtract").len() {
         return None;
+    }
+    let beyond = BeyondSymmetry::of(whole.bounds(), solid_bounds(&whole, &cut), boundary?, grid);
+    if !beyond.boxes.is_empty() {
+        match &mut whole {
+            SolidShape::Box { corners } => *corners = left_of_box(*corners, &beyond.boxes),
+            _ => cut.extend(beyond.boxes.iter().map(|&corners| SolidShape::Box { corners })),
+        }
+        beyond.note(body, Geometry::Solid, report);
     }
     let outside = solid_bounds(&whole, &cut).into_iter().find_map(|corner| place::beyond(grid, corner));
     if let Some(message) = outside {
