@@ -176,7 +176,8 @@ pub fn warnings(case: &Case, ranks: usize) -> Vec<String> {
     {
         warnings.push(format!(
             "modified-f-bar smooths the elastic strain once a step, whatever the step's length: over all steps along about \
-             {length:.2e} m, where the thinnest connected material has {size} m; results belong to their number of steps"
+             {length:.2e} m, where the thinnest connected material has {size} m; results belong to their number of \
+             steps"
         ));
     }
     warnings

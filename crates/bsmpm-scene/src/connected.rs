@@ -132,7 +132,8 @@ pub(crate) fn near_pairs(bounds: &[[[f64; 3]; 2]], reach: f64) -> impl Iterator<
     })
 }
 
-/// Whether the bounds overlap or touch, along all axes but one by more than `slack`: an edge in common connects nothing.
+/// Whether the bounds overlap or touch, along all axes but one by more than `slack`: an edge in common connects
+/// nothing.
 fn share_face(a: &[[f64; 3]; 2], b: &[[f64; 3]; 2], dims: usize, slack: f64) -> bool {
     let common = |axis: usize| a[1][axis].min(b[1][axis]) - a[0][axis].max(b[0][axis]);
     let touching = (0..dims).filter(|&axis| common(axis) >= -slack).count();

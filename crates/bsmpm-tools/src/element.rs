@@ -30,9 +30,9 @@ A test is a table of the case: a start and stages, each with what is held and wh
 
 Tests: triaxial, biaxial, oedometer, isotropic, simple-shear, mixed; triaxial, biaxial, simple-shear and mixed also undrained.
 DIR gets NAME.csv, a row a step, and a picture of all tests: compression.png of those along y, shear.png of those in shear.
-Stresses are effective ones of Cauchy, positive in tension; pressure, deviator and pore-pressure are p, q and u. Nothing but
-the material, at one height, is used of the case; strength_reduction acts on it, and a softening_strain by its cells. A test
-needs neither [gravity] nor [initial].
+Stresses are effective ones of Cauchy, positive in tension; pressure, deviator and pore-pressure are p, q and u.
+Nothing but the material, at one height, is used of the case; strength_reduction acts on it, and a softening_strain by
+its cells. A test needs neither [gravity] nor [initial].
 
 Exit codes: 0 done; 2 command line; 65 the case has errors, or no such test; 66 no such case; 74 a file could not be written;
 80 a material cannot carry what a stage asks for: the tables end where it was left.

@@ -19,12 +19,13 @@ pub(super) fn of(name: &str, case: &Case) -> String {
             against_noise(case)
         ),
         "energy-growth" => format!(
-            "motion and strain have more energy than they were given: dilatant or strengthless flow under an F-bar makes some. {}",
+            "motion and strain have more energy than they were given: dilatant or strengthless flow under an F-bar \
+             makes some. {}",
             against_growth(case.stabilisation)
         ),
         "wall-velocity" => format!(
-            "points there keep velocities that the grid holds, and are not braked by the wall as they should be: layers of a cell \
-             slide too far. {}",
+            "points there keep velocities that the grid holds, and are not braked by the wall as they should be: \
+             layers of a cell slide too far. {}",
             match case.analysis.mass {
                 MassMatrix::Lumped => {
                     "Use smaller cells, analysis.mass = \"consistent\", or a face with { friction = ... }."
@@ -50,12 +51,12 @@ fn against_noise(case: &Case) -> &'static str {
             "Set stabilisation.method = \"consistent-f-bar\"."
         }
         Stabilisation::ConsistentFBar if is_rubbery && is_static && case.geometry != Geometry::Solid => {
-            "State the nearly incompressible material as undrained soil (drainage = \"undrained\", the same shear modulus, \
-             poisson = 0.25, water.bulk), or set stabilisation.method = \"subgrid-f-bar\"."
+            "State the nearly incompressible material as undrained soil (drainage = \"undrained\", the same shear \
+             modulus, poisson = 0.25, water.bulk), or set stabilisation.method = \"subgrid-f-bar\"."
         }
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar if is_rubbery && is_static => {
-            "State the nearly incompressible material as undrained soil (drainage = \"undrained\", the same shear modulus, \
-             poisson = 0.25, water.bulk)."
+            "State the nearly incompressible material as undrained soil (drainage = \"undrained\", the same shear \
+             modulus, poisson = 0.25, water.bulk)."
         }
         Stabilisation::ConsistentFBar | Stabilisation::ModifiedFBar if may_fit(case) => {
             "Use smaller cells, or set solver.quadrature = \"fitted\"."

@@ -102,8 +102,8 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             match case.stabilisation {
                 Stabilisation::None => "a smaller [analysis] dt",
                 Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
-                    "stabilisation.method = \"none\": where material flows without strength or dilates, every F-bar method \
-                     makes some energy"
+                    "stabilisation.method = \"none\": where material flows without strength or dilates, every F-bar \
+                     method makes some energy"
                 }
                 Stabilisation::FBar | Stabilisation::FBarZhao | Stabilisation::ModifiedFBar => {
                     "another [stabilisation]: f-bar, modified-f-bar and f-bar-zhao make energy where material flows \

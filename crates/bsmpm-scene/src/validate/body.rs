@@ -121,9 +121,9 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
         let paths = paths(&|body| alone(body).is_some());
         let up_to = if paths.len() > 1 { "up to " } else { "" };
         report.warn(format!(
-            "{}: {up_to}{:.0} % of it lies in cells where one point stands for all that is there, as its parts are thinner \
-             than its points lie apart: how it bends, and where its mass is within a cell, cannot be trusted; take smaller \
-             cells or more points_per_cell",
+            "{}: {up_to}{:.0} % of it lies in cells where one point stands for all that is there, as its parts are \
+             thinner than its points lie apart: how it bends, and where its mass is within a cell, cannot be trusted; \
+             take smaller cells or more points_per_cell",
             listed(&paths),
             1e2 * most
         ));

@@ -43,8 +43,8 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
     let more = if narrow.len() > 1 { format!(" (and {} more pairs)", narrow.len() - 1) } else { String::new() };
     let [one, other] = gap.bodies;
     report.warn(format!(
-        "body.{} and body.{}{more} are {:.3e} m apart, {:.2} cells: bodies share nodes within a cell, and act on each other \
-         before they touch. Use cells smaller than the gap, widen it to a cell, or let them share a boundary.",
+        "body.{} and body.{}{more} are {:.3e} m apart, {:.2} cells: bodies share nodes within a cell, and act on each \
+         other before they touch. Use cells smaller than the gap, widen it to a cell, or let them share a boundary.",
         one.min(other),
         one.max(other),
         gap.distance,
@@ -63,8 +63,8 @@ fn is_near(a: &[[f64; 3]; 2], b: &[[f64; 3]; 2], reach: f64) -> bool {
     (0..3).all(|axis| a[0][axis].max(b[0][axis]) - a[1][axis].min(b[1][axis]) <= reach)
 }
 
-/// The gap of two bodies near each other; of shapes in space that are no cuboids, and of shapes whose edges are too many,
-/// none.
+/// The gap of two bodies near each other; of shapes in space that are no cuboids, and of shapes whose edges are too
+/// many, none.
 fn gap(case: &Case, bodies: [usize; 2], work: &mut usize) -> Option<Gap> {
     let [a, b] = bodies.map(|number| &case.bodies[number]);
     if let (Some(a_bounds), Some(b_bounds)) = (cuboid(a), cuboid(b)) {

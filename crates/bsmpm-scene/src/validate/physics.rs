@@ -303,8 +303,8 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
     let dynamic = case.analysis.regime == Regime::Dynamic;
     if dynamic && case.analysis.mass == MassMatrix::Lumped && case.rotates_at_start() {
         report.warn(
-            "material rotates at the start, and analysis.mass is \"lumped\", which slows it (a body of 4 cells lost 12 % of its \
-             angular momentum in 0.2 rad). Set analysis.mass = \"consistent\".",
+            "material rotates at the start, and analysis.mass is \"lumped\", which slows it (a body of 4 cells lost 12 \
+             % of its angular momentum in 0.2 rad). Set analysis.mass = \"consistent\".",
         );
     }
     if case.analysis.regime == Regime::QuasiStatic && !loaded(case) {

@@ -50,8 +50,8 @@ impl BodyShape {
     }
 }
 
-/// What of a body is beyond planes of symmetry: faces with rollers in the middle of its bounds. It is cut off. A body that
-/// reaches over a face by another distance is not symmetric about it, and refused.
+/// What of a body is beyond planes of symmetry: faces with rollers in the middle of its bounds. It is cut off. A body
+/// that reaches over a face by another distance is not symmetric about it, and refused.
 struct BeyondSymmetry<const D: usize> {
     /// m  lower and upper corners of what is cut off
     boxes: Vec<[[f64; D]; 2]>,

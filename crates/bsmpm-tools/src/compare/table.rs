@@ -18,8 +18,8 @@ struct TableRow {
     number: usize,
 }
 
-/// The table, its columns right-aligned; where a curve does not reach, there is a dash. Runs of one label that end at the
-/// same x have a row each.
+/// The table, its columns right-aligned; where a curve does not reach, there is a dash. Runs of one label that end at
+/// the same x have a row each.
 pub(super) fn text(runs: &Runs, at: &[f64]) -> String {
     let at = if at.is_empty() { places(runs) } else { at.to_vec() };
     let rows: Vec<TableRow> = at.iter().flat_map(|&x| rows(runs, x)).collect();

@@ -106,8 +106,8 @@ fn one_point_a_cell_is_told_at_the_end() {
 }
 
 /// `cases/results/strip_footing.md`: noise of 13.4 (`none`), 1.46 (`f-bar`), 0.38 and 0.31 (`modified-f-bar`,
-/// `consistent-f-bar`); with smaller cells 0.16. Where Poisson's ratio is 0.499 `cases/results/stabilisation.md` has 0.476
-/// with `consistent-f-bar`, 0.277 as undrained soil.
+/// `consistent-f-bar`); with smaller cells 0.16. Where Poisson's ratio is 0.499 `cases/results/stabilisation.md` has
+/// 0.476 with `consistent-f-bar`, 0.277 as undrained soil.
 #[test]
 fn the_advice_against_noise_is_not_the_method_in_use() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());

@@ -314,8 +314,9 @@ fn the_short_collapse_runs_out_as_the_paper_says() {
     all_finite(&directory);
 }
 
-/// A column of 8 m in cells that grow from 0.25 m at its top by a factor of about 1.2: its vertical stress at depth d is
-/// 2000 kg/m3 x 9.81 m/s2 x d. The points are within 0.8 % of it below 2 m; the nearest one of a place is up to 4.8 % off.
+/// A column of 8 m in cells that grow from 0.25 m at its top by a factor of about 1.2: its vertical stress at depth d
+/// is 2000 kg/m3 x 9.81 m/s2 x d. The points are within 0.8 % of it below 2 m; the nearest one of a place is up to 4.8
+/// % off.
 #[test]
 fn a_place_in_graded_cells_is_read_as_accurately_as_the_points_around() {
     let heights = [0.05, 0.4, 1.1, 1.5, 2.2, 2.9, 3.5, 4.0, 4.4, 5.0, 5.5, 5.9];
@@ -331,7 +332,8 @@ fn a_place_in_graded_cells_is_read_as_accurately_as_the_points_around() {
          knots.y = [0.0, 1.51, 2.8, 3.86, 4.75, 5.5, 6.12, 6.64, 7.07, 7.42, 7.75, 8.0, 8.25]\n\
          [material.m]\nmodel = \"hencky\"\nyoung = 1e9\npoisson = 0.3\ndensity = 2000\n\
          [[body]]\nmaterial = \"m\"\npoints_per_cell = 3\nbox = {{ lower = [0.0, 0.0], upper = [1.0, 8.0] }}\n\
-         {histories}[[profile]]\nname = \"axis\"\nfrom = [0.5, 0.0]\nto = [0.5, 8.0]\ncount = 81\nquantities = [\"stress\"]\n"
+         {histories}[[profile]]\nname = \"axis\"\nfrom = [0.5, 0.0]\nto = [0.5, 8.0]\ncount = 81\nquantities = \
+         [\"stress\"]\n"
     );
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);

@@ -138,7 +138,8 @@ fn the_advice_on_an_elastic_start_is_not_to_make_one() {
     assert!(line.contains("ramp") && !line.contains("gravity = \"elastic\""), "{}", told.stderr);
 }
 
-/// Four layers that lie on each other are as thick as one body of their height: smoothing along 0.25 m is usual in both.
+/// Four layers that lie on each other are as thick as one body of their height: smoothing along 0.25 m is usual in
+/// both.
 #[test]
 fn smoothing_is_judged_by_the_thickness_of_connected_material() {
     let block = changed(LAYER, "upper = [2.0, 1.5]", "upper = [4.0, 4.5]");

@@ -246,8 +246,8 @@ fn keep<K: Kinematics<D>, const D: usize>(
     points.dilation = dilation.or(points.dilation.take());
 }
 
-/// Cells by which a point beside a fixed face must have been displaced since the start for its velocity to count. Ground
-/// that vibrates about its place keeps such velocities too, but nothing slides by them.
+/// Cells by which a point beside a fixed face must have been displaced since the start for its velocity to count.
+/// Ground that vibrates about its place keeps such velocities too, but nothing slides by them.
 const LEAST_PATH: f64 = 0.05;
 
 /// Kinetic energy, J, that points within a cell of a face which holds all components have by their velocities, beyond

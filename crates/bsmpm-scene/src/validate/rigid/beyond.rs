@@ -16,8 +16,8 @@ pub(super) fn check(case: &Case, rigid: &Rigid, record: &Record, report: &mut Re
         report.warn(format!("{key}: it lies outside of the grid and does not come into it: it does nothing"));
     } else if let Some((face, distance)) = touched(case, rigid) {
         report.warn(format!(
-            "{key}: it lies {distance:.3} m from the face {} of the grid at the start and is pushed towards it. Faces do not \
-             stop rigid bodies: it leaves the grid, and no soil acts on it there. Enlarge the grid there.",
+            "{key}: it lies {distance:.3} m from the face {} of the grid at the start and is pushed towards it. Faces \
+             do not stop rigid bodies: it leaves the grid, and no soil acts on it there. Enlarge the grid there.",
             face.side(case.geometry)
         ));
     } else if rigid.free.contains(&true)
@@ -68,8 +68,8 @@ fn cut(case: &Case, rigid: &Rigid) -> Option<Face> {
     })
 }
 
-/// The first face within a tenth of a cell of which a body in the plane lies, and to which a free motion goes by what moves it at
-/// the start: its velocity, else its force and its weight; and the distance to it, m.
+/// The first face within a tenth of a cell of which a body in the plane lies, and to which a free motion goes by what
+/// moves it at the start: its velocity, else its force and its weight; and the distance to it, m.
 fn touched(case: &Case, rigid: &Rigid) -> Option<(Face, f64)> {
     if matches!(rigid.shape, RigidShape::InSpace(_)) {
         return None;
