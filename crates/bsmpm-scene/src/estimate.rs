@@ -61,7 +61,7 @@ const KRYLOV: u128 = 100 * 16;
 /// The same where water flows, of as many products as there may be.
 const KRYLOV_OF_WATER: u128 = bsmpm::solve::fgmres::MOST as u128 * 16;
 /// Bytes of a process that has next to nothing to solve: libraries and buffers of MPI and PETSc.
-const PROCESS: u128 = 47_000_000;
+const PROCESS: u128 = 52_000_000;
 
 /// Poisson's ratio up to which the stiffness that secants correct is without F-bar's coupling in space.
 const LOCAL: f64 = 0.45;

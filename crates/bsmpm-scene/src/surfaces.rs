@@ -1,9 +1,10 @@
 //! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
 
-mod transition;
+pub(crate) mod transition;
 
 use crate::case::{Triangle, keeps_direction};
 use crate::grid::vector;
+use crate::validate::normal_of_site;
 use crate::{Acting, Base, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Shares, Site};
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Load, Path, RigidBody, Strip, StripContact, StripReport, SurfacePoint, surface};
@@ -12,6 +13,7 @@ use bsmpm::kinematics::{Axisymmetric, Kinematics};
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow, Permeability, Soil};
+use transition::Neighbour;
 
 /// Stiffness of the penalty over E/h of the stiffest material and the smallest cell. The traction is carried from step
 /// to step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
@@ -59,8 +61,19 @@ pub fn strips<K: Kinematics<D>, const D: usize>(
     let acts = |number: usize| case.acts_since(Acting::Strip(number), t).is_some();
     let held = |(number, strip): (usize, Strip<D>)| if acts(number) { strip } else { Strip { penalty: 0.0, ..strip } };
     let mut strips: Vec<Strip<D>> = footing.chain(prescribed).enumerate().map(held).collect();
-    transition::connect(&mut strips, grid);
+    transition::connect(&mut strips, &neighbours(case, t), grid);
     strips
+}
+
+/// What strips see of each other, in the same order.
+pub(crate) fn neighbours<const D: usize>(case: &Case, t: f64) -> Vec<Neighbour<D>> {
+    let footing = case.footing.iter().map(|footing| footing.site);
+    let sites = footing.chain(case.prescribed.iter().map(|prescribed| prescribed.site));
+    let neighbour = |(number, site): (usize, Site)| Neighbour {
+        normal: vector(normal_of_site(site)),
+        since: case.acts_since(Acting::Strip(number), t),
+    };
+    sites.enumerate().map(neighbour).collect()
 }
 
 /// The strip that holds a face of the grid, if any.

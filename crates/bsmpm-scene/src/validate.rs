@@ -55,6 +55,8 @@ pub(crate) const STANDARD_GRAVITY: f64 = 9.81;
 const NEARLY_STANDARD: f64 = 1e-6;
 /// Poisson's ratio above which elastic material is taken to lock.
 pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
+pub(crate) use site::normal_of as normal_of_site;
+
 /// Longest edge over the shortest one of cells that count as squares of one size.
 pub(crate) const SQUARE: f64 = 1.01;
 

@@ -11,11 +11,23 @@ use std::collections::BTreeMap;
 const NEAR: f64 = 1.0 - 1e-6;
 /// Part of the sum of two distances below which they are equal.
 const EQUAL: f64 = 1e-6;
+/// Parts of the shortest cell by which strips may miss a common plane, and motions differ, by rounding.
+const ROUNDING: f64 = 1e-6;
+/// The same of the cosine between two normals.
+const PARALLEL: f64 = 1e-9;
+
+/// A strip as those that it may meet see it.
+pub(crate) struct Neighbour<const D: usize> {
+    /// unit normal of its surface
+    pub normal: Vector<D>,
+    /// since when it acts, s; `None` if it does not
+    pub since: Option<f64>,
+}
 
 /// Lets the points of strips that meet and move differently follow the motions of both.
-pub(super) fn connect<const D: usize>(strips: &mut [Strip<D>], grid: &Grid<D>) {
-    let transitions: Vec<BTreeMap<usize, Vec<MotionShare>>> =
-        (0..strips.len()).map(|number| transitions(number, strips, grid)).collect();
+pub(super) fn connect<const D: usize>(strips: &mut [Strip<D>], neighbours: &[Neighbour<D>], grid: &Grid<D>) {
+    let transitions: Vec<BTreeMap<usize, Vec<MotionShare<D>>>> =
+        (0..strips.len()).map(|number| transitions(number, strips, neighbours, grid)).collect();
     strips.iter_mut().zip(transitions).for_each(|(strip, transitions)| strip.transitions = transitions);
 }
 
@@ -23,11 +35,14 @@ pub(super) fn connect<const D: usize>(strips: &mut [Strip<D>], grid: &Grid<D>) {
 fn transitions<const D: usize>(
     number: usize,
     strips: &[Strip<D>],
+    neighbours: &[Neighbour<D>],
     grid: &Grid<D>,
-) -> BTreeMap<usize, Vec<MotionShare>> {
-    let strip = &strips[number];
-    let is_met =
-        |other: &usize| *other != number && contradict(strip, &strips[*other]) && meet(strip, &strips[*other], grid);
+) -> BTreeMap<usize, Vec<MotionShare<D>>> {
+    let (strip, own) = (&strips[number], &neighbours[number]);
+    let is_met = |other: &usize| {
+        let is_alike = neighbours[*other].since == own.since && own.since.is_some();
+        *other != number && is_alike && meet(strip, &strips[*other], [own, &neighbours[*other]], grid)
+    };
     let others: Vec<usize> = (0..strips.len()).filter(is_met).collect();
     let mut transitions = BTreeMap::new();
     let reach = grid.order() as f64 + 1.0;
@@ -35,12 +50,70 @@ fn transitions<const D: usize>(
         if others.iter().all(|other| distance_in_cells(x, &strips[*other], grid) >= reach) {
             continue;
         }
-        let shares = shares_at(x, number, &others, strips, grid);
+        let mut shares = shares_at(x, number, &others, strips, grid);
+        for share in &mut shares {
+            let holds_all = [strip, &strips[share.strip]].iter().all(|strip| holds_all(strip));
+            share.normal = (!holds_all).then_some(own.normal);
+        }
         if !shares.is_empty() {
             transitions.insert(point, shares);
         }
     }
     transitions
+}
+
+/// m  largest difference between the motions of two strips at an angle in a component that both hold; `None` where they
+/// do not share a corner.
+pub(crate) fn apart_at_corner<const D: usize>(
+    strip: &Strip<D>,
+    other: &Strip<D>,
+    neighbours: [&Neighbour<D>; 2],
+    grid: &Grid<D>,
+) -> Option<f64> {
+    let [own_normal, other_normal] = neighbours.map(|neighbour| neighbour.normal);
+    let is_at_angle = own_normal.dot(&other_normal).abs() <= 1.0 - PARALLEL;
+    let edge = grid.smallest_edge();
+    let share_corner = || corners(strip).any(|corner| distance_in_cells(&corner, other, grid) < ROUNDING);
+    if !is_at_angle || !share_corner() {
+        return None;
+    }
+    let both = |t: f64| {
+        let difference = strip.path.at(t) - other.path.at(t);
+        match (holds_all(strip), holds_all(other)) {
+            (true, true) => difference.norm(),
+            (true, false) => difference.dot(&other_normal).abs(),
+            (false, true) => difference.dot(&own_normal).abs(),
+            (false, false) => 0.0,
+        }
+    };
+    let times = strip.path.rows.iter().chain(&other.path.rows).map(|(t, _)| *t);
+    Some(times.map(both).fold(0.0, f64::max)).filter(|apart| *apart > ROUNDING * edge)
+}
+
+fn holds_all<const D: usize>(strip: &Strip<D>) -> bool {
+    strip.normal.is_none() && strip.contact.is_none()
+}
+
+/// Whether two strips lie in one plane, less than a cell apart, and hold one component to different motions.
+pub(crate) fn meet<const D: usize>(
+    strip: &Strip<D>,
+    other: &Strip<D>,
+    neighbours: [&Neighbour<D>; 2],
+    grid: &Grid<D>,
+) -> bool {
+    let normal = neighbours[0].normal;
+    let is_parallel = normal.dot(&neighbours[1].normal).abs() > 1.0 - PARALLEL;
+    let edge = grid.smallest_edge();
+    let is_one_plane = is_parallel && (strip.points[0].x - other.points[0].x).dot(&normal).abs() < ROUNDING * edge;
+    let all = holds_all(strip) && holds_all(other);
+    let apart = |t: f64| {
+        let difference = strip.path.at(t) - other.path.at(t);
+        if all { difference.norm() } else { difference.dot(&normal).abs() }
+    };
+    let mut times = strip.path.rows.iter().chain(&other.path.rows).map(|(t, _)| *t);
+    is_one_plane
+        && times.any(|t| apart(t) > ROUNDING * edge)
+        && corners(strip).any(|corner| distance_in_cells(&corner, other, grid) < NEAR)
 }
 
 /// Parts of the motions of `others` at a place of strip `number`: sums of the functions there, each of which belongs to
@@ -51,7 +124,7 @@ fn shares_at<const D: usize>(
     others: &[usize],
     strips: &[Strip<D>],
     grid: &Grid<D>,
-) -> Vec<MotionShare> {
+) -> Vec<MotionShare<D>> {
     let offsets = grid.offsets();
     let Some(attachment) = Attachment::at(grid, &offsets, |_| true, x) else { return Vec::new() };
     let mut sums = vec![0.0; others.len()];
@@ -67,25 +140,7 @@ fn shares_at<const D: usize>(
         }
     }
     let shares = others.iter().zip(sums).filter(|(_, share)| *share > 0.0);
-    shares.map(|(strip, share)| MotionShare { strip: *strip, share }).collect()
-}
-
-/// Whether two strips that act hold one component of the displacement to different motions.
-fn contradict<const D: usize>(a: &Strip<D>, b: &Strip<D>) -> bool {
-    let [held_by_a, held_by_b] = [a, b].map(|strip| strip.normal.or(strip.contact.map(|contact| contact.inward)));
-    let length_held_by_both = |difference: Vector<D>| match (held_by_a, held_by_b) {
-        (None, None) => difference.norm(),
-        (Some(normal), None) | (None, Some(normal)) => difference.dot(&normal).abs(),
-        (Some(a), Some(b)) if a.dot(&b).abs() > 1.0 - 1e-9 => difference.dot(&a).abs(),
-        (Some(_), Some(_)) => 0.0,
-    };
-    let mut times = a.path.rows.iter().chain(&b.path.rows).map(|(t, _)| *t);
-    a.acts() && b.acts() && times.any(|t| length_held_by_both(a.path.at(t) - b.path.at(t)) > 0.0)
-}
-
-/// Whether two strips are less than a cell apart.
-fn meet<const D: usize>(strip: &Strip<D>, other: &Strip<D>, grid: &Grid<D>) -> bool {
-    corners(strip).any(|corner| distance_in_cells(&corner, other, grid) < NEAR)
+    shares.map(|(strip, share)| MotionShare { strip: *strip, share, normal: None }).collect()
 }
 
 /// m  where a node's function has its Greville point

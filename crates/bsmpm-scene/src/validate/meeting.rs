@@ -1,9 +1,10 @@
 //! Strips that meet one another or a rigid body, and move differently.
 
-use super::site::normal_of;
-use crate::case::{Acting, Case, Site};
+use super::place::is_in;
+use crate::case::{Acting, Case};
 use crate::record::Record;
 use crate::report::Report;
+use crate::surfaces::transition::{apart_at_corner, meet};
 use crate::surfaces::{self, name_of_strip};
 use crate::words::Geometry;
 use bsmpm::boundary::{RigidBody, Strip};
@@ -17,6 +18,9 @@ const ALONG: f64 = 0.25;
 /// Cells by which the motions of strips that meet may differ: the material between them is deformed within one cell.
 const APART: f64 = 1.0;
 
+/// Parts of a cell off a strip's plane at which soil and rigid bodies are looked for.
+const BESIDE: f64 = 0.1;
+
 /// A strip, and what it meets.
 struct Meeting {
     strip: usize,
@@ -27,12 +31,20 @@ enum Other {
     /// another strip
     Strip {
         number: usize,
+        /// whether both act since the same time
+        act_together: bool,
         /// m  largest difference of their motions
         apart: f64,
         /// m  the farther of their motions along their surfaces
         along: f64,
         /// m  an edge of the cells there
         edge: f64,
+    },
+    /// another strip at an angle, with a common corner
+    Corner {
+        number: usize,
+        /// m  largest difference of their motions in a component that both hold
+        apart: f64,
     },
     /// number of a rigid body whose surface continues that of the strip
     Rigid(usize),
@@ -50,7 +62,9 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         };
         for meeting in meetings {
             let pair = match meeting.other {
-                Other::Strip { number, .. } => (meeting.strip, name_of_strip(case, number)),
+                Other::Strip { number, .. } | Other::Corner { number, .. } => {
+                    (meeting.strip, name_of_strip(case, number))
+                }
                 Other::Rigid(number) => (meeting.strip, format!("rigid.{number}")),
             };
             if !known.contains(&pair) {
@@ -72,23 +86,34 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
     match meeting.other {
         Other::Rigid(_) => {
             let message = format!(
-                "{other} continues the surface of {name} and moves differently: the node between them cannot follow both. Use \
-                 [[prescribed]] for both, [[rigid]] for both, or leave a cell between them."
+                "{other} continues the surface of {name} and moves differently. The soil cannot follow both. Use [[prescribed]] \
+                 for both, [[rigid]] for both, or leave a cell between them."
+            );
+            record.error("from", message, report);
+        }
+        Other::Corner { apart, .. } => report.warn(format!(
+            "{name} and {other} share a corner, and their motions differ there by {apart:.3e} m in a direction that both hold. \
+             Forces near the corner are wrong. Use components = \"normal\" in one of them, or leave a cell between them."
+        )),
+        Other::Strip { act_together: false, .. } => {
+            let message = format!(
+                "{other} meets {name}, moves differently, and acts since another time. The soil cannot follow both. Let both \
+                 act from the same time, or leave a cell between them."
             );
             record.error("from", message, report);
         }
         Other::Strip { along, edge, .. } if along > ALONG * edge => {
             let message = format!(
                 "{other} meets {name} and moves differently, and one of them moves {along:.3} m along its surface (at most \
-                 {ALONG} of a cell of {edge:.3} m is possible): the node between them cannot follow both. Leave a cell \
-                 between them."
+                 {:.3} m, {ALONG} cells). The soil cannot follow both. Leave a cell between them.",
+                ALONG * edge
             );
             record.error("from", message, report);
         }
         Other::Strip { apart, edge, .. } => {
-            let value = format!("follows {other}, too, where they meet");
-            let reason = "they move differently: the motion changes over about one cell, and the force of each is the one that \
-                          does work on its motion";
+            let value = format!("shares its end with {other}");
+            let reason = "they move differently: the motion changes from one to the other over about one cell, and the reaction in \
+                          that cell is divided between them";
             report.note(&name, &value, reason);
             if apart > APART * edge {
                 report.warn(format!(
@@ -105,40 +130,56 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
 fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meeting> {
     let Ok(grid) = crate::model::grid::<D>(case) else { return Vec::new() };
     let strips = surfaces::strips::<K, D>(case, &grid, (1.0, t));
-    let footing = case.footing.iter().map(|footing| footing.site);
-    let sites: Vec<Site> = footing.chain(case.prescribed.iter().map(|prescribed| prescribed.site)).collect();
+    let neighbours = surfaces::neighbours::<D>(case, t);
+    let bodies = surfaces::rigid::<D>(case, t);
     let mut found = Vec::new();
-    for (strip, of) in strips.iter().enumerate() {
-        let shares = of.transitions.iter().flat_map(|(point, shares)| shares.iter().map(move |share| (*point, share)));
-        for (point, share) in shares.filter(|(_, share)| share.strip > strip) {
-            let is_known = |meeting: &Meeting| {
-                meeting.strip == strip && matches!(meeting.other, Other::Strip { number, .. } if number == share.strip)
-            };
-            if found.iter().any(is_known) {
+    let acting = (0..strips.len()).filter(|&number| neighbours[number].since.is_some());
+    let acting: Vec<usize> = acting.collect();
+    for &strip in &acting {
+        let of = &strips[strip];
+        for &number in acting.iter().filter(|&&number| number > strip) {
+            let both = [&neighbours[strip], &neighbours[number]];
+            if let Some(apart) = apart_at_corner(of, &strips[number], both, &grid) {
+                found.push(Meeting { strip, other: Other::Corner { number, apart } });
+            }
+            if !meet(of, &strips[number], both, &grid) {
                 continue;
             }
-            let number = share.strip;
-            let apart = largest(&[of, &strips[number]], |t| of.path.at(t) - strips[number].path.at(t));
-            let along = [strip, number].map(|number| {
-                let normal = crate::grid::vector::<D, 3>(normal_of(sites[number]));
-                largest(&[&strips[number]], |t| {
-                    let moved = strips[number].path.at(t);
-                    moved - normal * normal.dot(&moved)
-                })
+            let other = &strips[number];
+            let apart = largest(&[of, other], |t| of.path.at(t) - other.path.at(t));
+            let along = [of, other].map(|strip| {
+                let normal = both[0].normal;
+                largest(&[strip], |t| strip.path.at(t) - normal * normal.dot(&strip.path.at(t)))
             });
-            let edge = edge(&of.points[point].x, &grid);
-            let other = Other::Strip { number, apart, along: along[0].max(along[1]), edge };
+            let act_together = both[0].since == both[1].since;
+            let (along, edge) = (along[0].max(along[1]), edge(&of.points[0].x, &grid));
+            let other = Other::Strip { number, act_together, apart, along, edge };
             found.push(Meeting { strip, other });
         }
-        for (number, body) in surfaces::rigid::<D>(case, t).iter().enumerate() {
+        for (number, body) in bodies.iter().enumerate() {
             let acts = case.acts_since(Acting::Rigid(number), t).is_some();
-            let normal = crate::grid::vector::<D, 3>(normal_of(sites[strip]));
-            if acts && of.acts() && !body.is_free() && continues(of, &normal, body, &grid) {
+            let Some(inward) = inward::<D>(case, of, &neighbours[strip].normal, &grid) else { continue };
+            if acts && !body.is_free() && continues(of, &inward, body, &grid) {
                 found.push(Meeting { strip, other: Other::Rigid(number) });
             }
         }
     }
     found
+}
+
+/// The normal of a strip towards the soil; `None` where soil lies on both sides of its middle, or on none.
+fn inward<const D: usize>(case: &Case, strip: &Strip<D>, normal: &Vector<D>, grid: &Grid<D>) -> Option<Vector<D>> {
+    let (middle, lower) = (strip.points[strip.points.len() / 2].x, case.grid.lower());
+    let has_soil = |side: f64| {
+        let x = middle + normal * (side * BESIDE * edge(&middle, grid));
+        let at = std::array::from_fn(|axis| if axis < D { x[axis] + lower[axis] } else { 0.0 });
+        case.bodies.iter().any(|body| is_in(body, &case.grid, at))
+    };
+    match [has_soil(-1.0), has_soil(1.0)] {
+        [false, true] => Some(*normal),
+        [true, false] => Some(-normal),
+        _ => None,
+    }
 }
 
 /// m  the largest length of a displacement at the rows of the strips' paths
@@ -153,7 +194,7 @@ fn edge<const D: usize>(x: &Vector<D>, grid: &Grid<D>) -> f64 {
 }
 
 /// Whether the surface of a rigid body that moves differently along the strip's normal goes on where the strip ends:
-/// beyond an end, the body lies on one side of the strip's plane only.
+/// beyond an end, the body lies behind the strip's plane and not in front of it, where the soil is.
 fn continues<const D: usize>(strip: &Strip<D>, normal: &Vector<D>, body: &RigidBody<D>, grid: &Grid<D>) -> bool {
     let times = strip.path.rows.iter().map(|(t, _)| *t).chain(body.path.iter().map(|(t, _)| *t));
     let difference = |t: f64| strip.path.at(t) - Vector::from_fn(|axis, _| body.on_path(t)[axis]);
@@ -169,8 +210,8 @@ fn continues<const D: usize>(strip: &Strip<D>, normal: &Vector<D>, body: &RigidB
         let (edge, middle) = (edge(&corner, grid), strip.points[strip.points.len() / 2].x);
         let Some(outward) = (corner - middle).try_normalize(0.0) else { continue };
         let x = corner + (outward - normal * normal.dot(&outward)) * (0.5 * edge);
-        let sides = [-0.1, 0.1].map(|off| distance(&(x + normal * (off * edge))));
-        if is_beyond(&x, edge) && sides[0] * sides[1] < 0.0 && sides[0].abs().max(sides[1].abs()) <= 0.11 * edge {
+        let [behind, ahead] = [-BESIDE, BESIDE].map(|off| distance(&(x + normal * (off * edge))));
+        if is_beyond(&x, edge) && behind < 0.0 && ahead > 0.0 && ahead - behind <= 2.2 * BESIDE * edge {
             return true;
         }
     }

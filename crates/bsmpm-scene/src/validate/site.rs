@@ -73,7 +73,7 @@ pub(super) fn places(site: Site, grid: &GridSpec) -> Vec<[f64; 3]> {
 }
 
 /// Unit normal of what is held.
-pub(super) fn normal_of(site: Site) -> [f64; 3] {
+pub(crate) fn normal_of(site: Site) -> [f64; 3] {
     let along = |axis: usize| std::array::from_fn(|k| f64::from(u8::from(k == axis)));
     match site {
         Site::Segment { from, to } => {

@@ -136,6 +136,40 @@ fn a_trapdoor_is_the_same_on_any_number_of_ranks_and_over_restarts() {
     agree(&scratch.path("part"), &scratch.path("whole1"));
 }
 
+/// A block under a platen and next to a smooth side that moves by next to nothing: they do not share a motion. The side
+/// holds x only, the platen both components, so that only the platen is in the block's vertical balance.
+#[test]
+fn strips_at_a_right_angle_and_strips_that_face_each_other_keep_their_motions() {
+    let platen = |side: &str, top: &str, upper: &str| {
+        format!(
+            "geometry = \"plane-strain\"\nanalysis = {{ type = \"quasi-static\", steps = 2 }}\n\
+             boundary = {{ left = \"roller\" }}\n\
+             grid = {{ lower = [0.0, -0.5], upper = [1.5, 1.5], cell = 0.25 }}\n\
+             [material.rock]\nmodel = \"hencky\"\nyoung = \"10 MPa\"\npoisson = 0.0\ndensity = 2000\n\
+             [[body]]\nmaterial = \"rock\"\nbox = {{ lower = [0.0, 0.0], upper = [1.0, {upper}] }}\npoints_per_cell = 2\n\
+             [[prescribed]]\nname = \"top\"\nfrom = [0.0, {upper}]\nto = [1.0, {upper}]\ndisplacement = [0.0, {top}]\n\
+             [[prescribed]]\nname = \"base\"\nfrom = [0.0, 0.0]\nto = [1.0, 0.0]\ndisplacement = [0.0, 0.0]\n\
+             [[prescribed]]\nname = \"side\"\nfrom = [1.0, 0.0]\nto = [1.0, {upper}]\ndisplacement = [{side}, 0.0]\n\
+             components = \"normal\"\n\
+             [[history]]\nquantity = \"reaction\"\nof = \"top\"\nname = \"top\"\n\
+             [[history]]\nquantity = \"reaction\"\nof = \"side\"\nname = \"side\"\n"
+        )
+    };
+    let scratch = Scratch::new();
+    // A strain of 1 %: 100 kN. Of the layer 0.2 m high in cells of 0.25 m, too: its platens are less than a cell apart.
+    for (side, top, upper) in [("0.0", "-0.01", "1.0"), ("1e-9", "-0.01", "1.0"), ("0.0", "-0.002", "0.2")] {
+        scratch.write("case.toml", platen(side, top, upper));
+        scratch.direct(&["case.toml", "-q", "-o", "out", "--force"]).expect(0);
+        let history = history(&scratch.path("out"));
+        let [top, side] = ["top-y", "side-y"].map(|column| at(&history, column, 1.0));
+        println!("{upper} m high: top {top:.0} N, side {side:.0} N");
+        assert!((top / -100e3 - 1.0).abs() < 0.03 && side.abs() < 1.0, "{top} {side}");
+    }
+    scratch.write("case.toml", platen("0.001", "-0.01", "1.0"));
+    let output = scratch.direct(&["case.toml", "--check"]).expect(0);
+    output.says_once("prescribed.0 and prescribed.2 share a corner, and their motions differ there by 1.000e-3 m");
+}
+
 #[test]
 fn motions_that_the_rule_does_not_cover_are_refused_by_name() {
     let scratch = Scratch::with_case(&changed(TRAPDOOR, "CELL", "0.25"));

@@ -7,10 +7,10 @@
 //!
 //! # Strips that meet
 //!
-//! Where two strips meet and move differently, a continuous displacement cannot follow both. There the prescribed
-//! motion is the spline function sum_I N_I(x) U_I, whose coefficient U_I is the motion of the strip that is nearer to
-//! the node of N_I (its Greville point), and the mean of both where they are equally near. Splines can follow it
-//! exactly: a motion that they cannot follow would be resisted by tractions that grow in every step. A point of one
+//! Where two strips in one plane meet and move differently, a continuous displacement cannot follow both. There the
+//! prescribed motion is the spline function sum_I N_I(x) U_I, whose coefficient U_I is the motion of the strip that is
+//! nearer to the node of N_I (its Greville point), and the mean of both where they are equally near. Splines can follow
+//! it exactly: a motion that they cannot follow would be resisted by tractions that grow in every step. A point of one
 //! strip then follows the motions of both in parts ([`MotionShare`]), and its force counts for both in the same parts.
 //! So the force of a strip is the one that does work on its motion: the sum of forces at its nodes.
 
@@ -58,18 +58,27 @@ pub struct Strip<const D: usize> {
     /// its motion
     pub path: Path<D>,
     /// by number of a point: parts of other strips' motions in its own, see [the module](self)
-    pub transitions: BTreeMap<usize, Vec<MotionShare>>,
+    pub transitions: BTreeMap<usize, Vec<MotionShare<D>>>,
     /// Pa/m  penalty beta; 0: it holds nothing
     pub penalty: f64,
 }
 
 /// Part of another strip's motion in that of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotionShare {
+pub struct MotionShare<const D: usize> {
     /// number of the other strip
     pub strip: usize,
     /// its part, at most 1 with all others
     pub share: f64,
+    /// unit normal, if both strips hold the normal component only; `None`: both hold all
+    pub normal: Option<Vector<D>>,
+}
+
+impl<const D: usize> MotionShare<D> {
+    /// The part of a vector that is shared.
+    fn of(&self, vector: &Vector<D>) -> Vector<D> {
+        self.normal.map_or(*vector, |normal| normal * normal.dot(vector)) * self.share
+    }
 }
 
 impl<const D: usize> Strip<D> {
@@ -89,18 +98,22 @@ impl<const D: usize> Strip<D> {
         self.points.iter().fold(Vector::<D>::zeros(), |sum, point| sum + point.x * point.area) / area
     }
 
-    /// The strips whose motions a point of this strip, `number` of all, follows, with their parts: this one first.
-    fn motions(&self, number: usize, point: usize) -> impl Iterator<Item = MotionShare> + '_ {
-        let others = self.transitions.get(&point).map_or(&[][..], Vec::as_slice);
-        let own = 1.0 - others.iter().map(|other| other.share).sum::<f64>();
-        std::iter::once(MotionShare { strip: number, share: own }).chain(others.iter().copied())
+    /// Other strips whose motions one of its points follows in part.
+    fn others(&self, point: usize) -> &[MotionShare<D>] {
+        self.transitions.get(&point).map_or(&[], Vec::as_slice)
+    }
+
+    /// What other strips leave of a vector at one of its points.
+    fn own(&self, point: usize, vector: &Vector<D>) -> Vector<D> {
+        self.others(point).iter().fold(*vector, |rest, other| rest - other.of(vector))
     }
 }
 
 /// Displacement of a point of strip `number` at time `t`, m.
 pub fn displacement<const D: usize>(strips: &[Strip<D>], number: usize, point: usize, t: f64) -> Vector<D> {
-    let motions = strips[number].motions(number, point);
-    motions.fold(Vector::zeros(), |sum, motion| sum + strips[motion.strip].path.at(t) * motion.share)
+    let strip = &strips[number];
+    let own = strip.own(point, &strip.path.at(t));
+    strip.others(point).iter().fold(own, |sum, other| sum + other.of(&strips[other.strip].path.at(t)))
 }
 
 /// Force of a strip on the body.
@@ -118,11 +131,13 @@ fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -
     for (number, strip) in strips.iter().enumerate() {
         for (at, (point, carried)) in strip.points.iter().zip(&carried[number]).enumerate() {
             let acting = strip.contact.map_or(*carried, |contact| contact.acting(carried)) * point.area;
-            for MotionShare { strip, share } in strip.motions(number, at) {
-                let (force, arm) = (acting * share, point.x - middles[strip]);
+            let mut add = |strip: usize, force: Vector<D>| {
+                let arm = point.x - middles[strip];
                 resultants[strip].force += force;
                 resultants[strip].moment += arm[0] * force[1] - arm[1] * force[0];
-            }
+            };
+            add(number, strip.own(at, &acting));
+            strip.others(at).iter().for_each(|other| add(other.strip, other.of(&acting)));
         }
     }
     resultants
@@ -337,9 +352,11 @@ impl<const D: usize> StripAttachments<D> {
             let acting = held.traction(&self.offsets, u);
             sums[held.strip].held.add(1.0);
             let (mean, (t, dt)) = (held.mean(&self.offsets, u), self.span);
-            for MotionShare { strip, share } in strips[held.strip].motions(held.strip, held.point) {
-                let motion = strips[strip].path.at(t + dt) - strips[strip].path.at(t);
-                sums[strip].given.add(mean.dot(&motion) * share);
+            let motion = |strip: usize| strips[strip].path.at(t + dt) - strips[strip].path.at(t);
+            let strip = &strips[held.strip];
+            sums[held.strip].given.add(strip.own(held.point, &mean).dot(&motion(held.strip)));
+            for other in strip.others(held.point) {
+                sums[other.strip].given.add(other.of(&mean).dot(&motion(other.strip)));
             }
             let most = longest[LENGTHS * held.strip..].iter_mut().zip(lengths);
             most.for_each(|(most, length)| *most = f64::max(*most, length));

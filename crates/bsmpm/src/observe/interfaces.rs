@@ -135,5 +135,5 @@ fn line_beside(knots: &KnotVector, cell: usize, is_upper: bool) -> Option<InnerL
     } else {
         [(0..cell).rev().find(has_length)?, cell]
     };
-    Some(InnerLine { below, is_c0: knots.order() > 1 && above - below >= knots.order() })
+    Some(InnerLine { below, is_c0: above - below >= knots.order() })
 }
