@@ -92,7 +92,7 @@ fn warn_of_thin_bodies(case: &Case, report: &mut Report<'_>) {
     for axis in (0..case.grid.dims()).filter(|axis| has_friction(*axis)) {
         let edge = case.grid.axes[axis].longest();
         let thickness = |body: &Body| body.region.corners().map(|corner| corner[axis]);
-        let thickest = case.bodies.iter().map(|body| thickness(body)).map(|[lower, upper]| upper - lower);
+        let thickest = case.bodies.iter().map(thickness).map(|[lower, upper]| upper - lower);
         let thickest = thickest.fold(0.0, f64::max);
         if thickest < edge {
             report.warn(format!(
