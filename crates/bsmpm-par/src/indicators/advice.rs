@@ -129,7 +129,7 @@ fn constant(name: &str, case: &Case) -> &'static str {
         }
         "interface-shift" if may_fit(case) => {
             "stresses within three cells of the interface are wrong by 3 % (RMS) at 0.03 cells, 10 % at 0.1 and about 25 % at 0.2. \
-             Use solver.quadrature = \"fitted\" (dry ground), or larger cells there"
+             Use solver.quadrature = \"fitted\", or larger cells there"
         }
         "interface-shift" => {
             "stresses within three cells of the interface are wrong: with fitted quadrature by 2 % (RMS) at 0.2 cells and 3 to 5 % \
