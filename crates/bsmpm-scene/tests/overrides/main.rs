@@ -2,6 +2,7 @@
 
 mod loads;
 mod materials;
+mod motion;
 
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Law, Material, MohrCoulomb};
@@ -439,106 +440,6 @@ fn ground_that_its_water_cannot_leave_is_warned_of() {
     let behind = [tight, &column(1, [0.3, 0.4], "clay"), &column(2, [0.1, 0.3], "tight")];
     let found = warned(&[&wide[..], &behind].concat());
     assert!(found.len() == 1 && found[0].starts_with("body.1: no drain is on it"), "{found:?}");
-}
-
-/// A square with 1 m edges in cells of 0.25 m, 2 points along an axis of each: its points lie 0.0625 m inside.
-#[test]
-fn a_free_body_at_the_edge_of_the_grid_is_warned_of() {
-    let head = "geometry = \"plane-strain\"\nanalysis = { type = \"dynamic\", end = 0.2, dt = 0.01 }\n\
-                grid = { lower = [0, 0], upper = [3, 3], cell = 0.25, order = \"quadratic\" }\n\
-                [boundary]\nbottom = \"free\"\n[material.m]\nmodel = \"hencky\"\nyoung = 1e9\npoisson = 0.3\ndensity = \
-                1000\n";
-    let warned = |x: f64, motion: &str, set: &[&str]| -> Vec<String> {
-        let body = format!(
-            "{head}[[body]]\nmaterial = \"m\"\npoints_per_cell = 2\nbox = {{ lower = [{x:?}, 1.0], upper = [{:?}, 2.0] \
-             }}\n\
-             {motion}\n",
-            x + 1.0
-        );
-        let warnings = valid(&body, set).warnings;
-        warnings.into_iter().filter(|warning| warning.contains("leaves the grid")).collect()
-    };
-    let found = warned(0.0, "velocity = [-1.0, 0.0]", &[]);
-    assert!(found.len() == 1 && found[0].starts_with("body.0: it lies 0.000 m from the free face left"), "{found:?}");
-    assert!(
-        found[0].contains("at about t = 0.064 s") && found[0].contains("Enlarge the grid there by 0.138 m"),
-        "{found:?}"
-    );
-    assert!(warned(0.2, "velocity = [-2.0, 0.0]", &[])[0].contains("0.200 m from"));
-    assert!(warned(0.0, "spin = { rate = 2.0, about = [0.5, 1.5] }", &[])[0].contains("free face left"));
-    let held: &[&str] = &["boundary.left=roller"];
-    for (x, motion, set) in [
-        (0.0, "velocity = [1.0, 0.0]", &[][..]),
-        (0.0, "", &[]),
-        (1.0, "velocity = [-1.0, 0.0]", &[]),
-        (0.0, "velocity = [-1.0, 0.0]", held),
-        (0.1, "spin = { rate = 0.1, about = [0.6, 1.5] }", &[]),
-    ] {
-        assert_eq!(warned(x, motion, set), [""; 0], "{x} {motion} {set:?}");
-    }
-    let rigid = |velocity: &str| {
-        let disc = format!(
-            "{head}[[body]]\nmaterial = \"m\"\npoints_per_cell = 2\nbox = {{ lower = [0.0, 0.0], upper = [3.0, 1.0] \
-             }}\n\
-             [[rigid]]\nname = \"disc\"\ncircle = {{ center = [0.5, 1.5], radius = 0.5 }}\ndensity = 1000\n\
-             free = [\"x\", \"y\", \"rotation\"]\nstart_velocity = [{velocity}, 0.0]\n"
-        );
-        let warnings = valid(&disc, &["boundary.bottom=fixed"]).warnings;
-        warnings.iter().filter(|warning| warning.contains("0.000 m from the face left of the grid")).count()
-    };
-    assert_eq!([rigid("-1.0"), rigid("1.0"), rigid("0.0")], [1, 0, 0]);
-}
-
-/// Sixteen bodies of a cell each whose velocities are those of a rotation, of a translation, or of two halves that meet
-/// head-on; and the rotation of bodies that are apart.
-#[test]
-fn a_rotation_by_velocities_is_warned_of_like_a_spin() {
-    let head = "geometry = \"plane-strain\"\nanalysis = { type = \"dynamic\", end = 1, dt = 0.1 }\n\
-                grid = { lower = [0, 0], upper = [8, 8], cell = 0.5, order = \"quadratic\" }\n\
-                [boundary]\nbottom = \"fixed\"\n[material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\ndensity \
-                = 2000\n";
-    let rotates = |velocity: &dyn Fn(f64, f64) -> [f64; 2], distance: f64| {
-        let body = |k: u32| {
-            let [i, j] = [k % 4, k / 4].map(f64::from);
-            let [x, y] = [2.0 + distance * i, 2.0 + distance * j];
-            let [vx, vy] = velocity(i - 1.5, j - 1.5);
-            format!(
-                "[[body]]\nmaterial = \"m\"\npoints_per_cell = 2\nvelocity = [{vx:?}, {vy:?}]\n\
-                 box = {{ lower = [{x:?}, {y:?}], upper = [{:?}, {:?}] }}\n",
-                x + 0.5,
-                y + 0.5
-            )
-        };
-        let text = format!("{head}{}", (0..16).map(body).collect::<String>());
-        valid(&text, &[]).warnings.iter().any(|warning| warning.contains("material rotates at the start"))
-    };
-    assert!(rotates(&|x, y| [-y, x], 0.5));
-    assert!(rotates(&|x, y| [3.0 - y, x], 0.5));
-    assert!(!rotates(&|_, _| [1.0, 2.0], 0.5));
-    assert!(!rotates(&|x, _| [-x.signum(), 0.0], 0.5));
-    assert!(!rotates(&|x, y| [-y, x], 1.0));
-}
-
-#[test]
-fn a_body_spins_about_its_place() {
-    let case = set(FULL, &["body.2.spin={ rate = 2.0, about = [\"1 m\", 2.0] }"]).expect("a valid case");
-    assert!(
-        case.warnings.iter().any(|warning| warning.contains("material rotates at the start")),
-        "{:?}",
-        case.warnings
-    );
-    let mut seen = 0;
-    for point in seed::<PlaneStrain, 2>(&case, 0..case.grid.axes[0].cells())
-        .filter(|point| point.material == 2 && point.x[0] >= 1.0)
-    {
-        // The block's own velocity besides; the grid begins at the origin.
-        let expected = [-2.0 * (point.x[1] - 2.0), -1.0 + 2.0 * (point.x[0] - 1.0)];
-        assert!((point.v - Vector::from(expected)).norm() < 1e-14, "{:?} at {:?}", point.v, point.x);
-        seen += 1;
-    }
-    assert_eq!(seen, 8, "two cells of four points");
-    let message = format!("{:?}", set(STATIC, &["body.0.spin={ rate = 2.0, about = [0, 0] }"]).expect_err("at rest"));
-    assert!(message.contains("has no meaning in a quasi-static analysis"), "{message}");
 }
 
 /// Ground that no water can flow through fails without drainage, unless the case says otherwise.
