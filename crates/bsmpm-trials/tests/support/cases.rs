@@ -101,6 +101,9 @@ pub fn pressed_block() -> String {
     changed(SLIDING_BLOCK, "model   = \"hencky\"", clay) + press
 }
 
+/// One factorisation of the whole on every rank, so that nothing depends on the partition.
+pub const EXACT: &str = "solver.linear={ ksp = \"preonly\", pc = \"cholesky\", factor = \"mumps\" }";
+
 /// Quasi-static, five steps of next to no work.
 pub const COLUMN: &str = r#"geometry = "plane-strain"
 

@@ -1,5 +1,6 @@
 //! `bsmpm limit-load` beside exact limit loads, and runs of cases that seek one on several ranks and over restarts.
 
+use crate::support::cases::EXACT;
 use crate::support::results::{agree, manifest};
 use crate::support::{Scratch, program, shipped};
 use bsmpm_tools::limit_load;
@@ -81,9 +82,6 @@ fn the_part_of_a_small_cohesion_is_measured() {
     assert!((0.10..0.14).contains(&part), "{part}");
     assert!(text.contains("The small cohesion carries"), "{text}");
 }
-
-/// One factorisation of the whole on every rank, so that nothing depends on the cut.
-const EXACT: &str = "solver.linear={ ksp = \"preonly\", pc = \"cholesky\", factor = \"mumps\" }";
 
 #[test]
 fn a_limit_load_is_the_same_on_any_number_of_ranks_and_over_restarts() {

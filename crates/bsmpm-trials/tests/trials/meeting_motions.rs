@@ -1,7 +1,7 @@
 //! Strips that meet and move differently: limit loads, forces in balance, ranks and restarts, and what is refused.
 
 use crate::support::Scratch;
-use crate::support::cases::changed;
+use crate::support::cases::{EXACT, changed};
 use crate::support::results::{agree, at, history};
 
 /// A trapdoor half as wide as it is deep below clay without weight that carries 50 kPa. Upper bound with vertical slip
@@ -116,9 +116,6 @@ fn a_wall_above_a_side_at_rest_has_rankines_passive_force() {
     // 3.186, 3.171 and 3.156 were found; before: 1732, 21, 7 and 4.75 with finer and finer cells.
     assert!((fine / 3.17 - 1.0).abs() < 0.1 && ((2.0 * fine - coarse) / 3.17 - 1.0).abs() < 0.05, "{coarse} {fine}");
 }
-
-/// One factorisation of the whole on every rank, so that nothing depends on the partition.
-const EXACT: &str = "solver.linear={ ksp = \"preonly\", pc = \"cholesky\", factor = \"mumps\" }";
 
 #[test]
 fn a_trapdoor_is_the_same_on_any_number_of_ranks_and_over_restarts() {
