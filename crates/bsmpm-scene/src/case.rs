@@ -225,8 +225,22 @@ impl Case {
 pub struct Gravity {
     /// m/s2  when fully applied
     pub acceleration: [f64; 3],
-    /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once
+    /// s (quasi-static: pseudo-time)  over which it grows linearly; 0: at once. With a stress at the start, whose
+    /// vertical gravity acts from time 0, its horizontal part does.
     pub ramp: f64,
+}
+
+impl Gravity {
+    /// Whether it acts along the last of the axes alone.
+    pub(crate) fn is_straight(&self, dims: usize) -> bool {
+        self.acceleration[..dims - 1].iter().all(|part| *part == 0.0)
+    }
+
+    /// Whether it acts downwards, along the last of the axes. In a quasi-static analysis it may have a horizontal part,
+    /// the inertia of a pseudo-static one, which changes neither pore pressures nor the stress at the start.
+    pub(crate) fn acts_down(&self, dims: usize, regime: Option<Regime>) -> bool {
+        self.acceleration[dims - 1] < 0.0 && (self.is_straight(dims) || regime == Some(Regime::QuasiStatic))
+    }
 }
 
 /// The non-linear iteration and the linear solver.

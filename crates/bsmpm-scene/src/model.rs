@@ -50,10 +50,11 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
         newmark: case.analysis.newmark,
         mass: case.analysis.mass,
         weighting: weighting(case),
-        gravity: case
-            .gravity
-            .as_ref()
-            .map(|gravity| Gravity { acceleration: vector(gravity.acceleration), ramp: gravity.ramp }),
+        gravity: case.gravity.as_ref().map(|gravity| Gravity {
+            acceleration: vector(gravity.acceleration),
+            ramp: gravity.ramp,
+            starts_vertical: case.initial.is_some(),
+        }),
         shaking: (!case.shaking.is_empty())
             .then(|| Shaking { rows: case.shaking.iter().map(|&(t, ground)| (t, vector(ground))).collect() }),
         boundary: boundary::<K, D>(case, &grid, t),

@@ -84,8 +84,8 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     let stages = stage::read_all((record, factor), bodies.as_deref(), time, report);
     let contacts = contacts(record, factor, report);
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
-    let mut gravity = gravity(record, end, report);
-    let water = water::read(record, (placed, gravity.as_ref()), end, report);
+    let mut gravity = gravity(record, (regime, end), report);
+    let water = water::read(record, (placed, gravity.as_ref()), (regime, end), report);
     let shaking =
         load::shaking(record, (regime, analysis.as_ref().map(|analysis| (analysis.end, analysis.dt))), report);
     let around = site::AroundStrip {
@@ -109,7 +109,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     let flow = flow::read(record, materials.as_deref(), (around, stages.as_deref()), report);
     let mut tractions = load::tractions(record, around, report);
     let mut point_loads = load::point_loads(record, around, report);
-    let mut initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), report);
+    let mut initial = load::initial(record, (materials.as_deref(), made), (gravity.as_ref(), regime), report);
     if let Some(end) = end.filter(|_| load::is_unloaded(record)) {
         initial = None;
         load::grow((gravity.as_mut(), &mut tractions, &mut point_loads, &mut rigid), end, report);
@@ -332,10 +332,20 @@ fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Co
     Some(Contact { friction, lifts })
 }
 
-fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {
-    let gravity = record.record("gravity")?;
-    let acceleration = gravity.vector("acceleration")?;
-    let ramp = gravity.number("ramp")?;
+fn gravity(record: &Record, (regime, end): (Option<Regime>, Option<f64>), report: &mut Report<'_>) -> Option<Gravity> {
+    let table = record.record("gravity")?;
+    let gravity = Gravity { acceleration: table.vector("acceleration")?, ramp: table.number("ramp")? };
+    let Gravity { acceleration, ramp } = gravity;
+    let dims = record.word::<Geometry>("geometry")?.dims();
+    if regime == Some(Regime::QuasiStatic) && !gravity.is_straight(dims) && acceleration[dims - 1] < 0.0 {
+        let coefficients = acceleration[..dims - 1].iter().map(|part| format!("{:.4}", -part / acceleration[dims - 1]));
+        let written = coefficients.collect::<Vec<_>>().join(", ");
+        report.note(
+            "gravity.acceleration",
+            format!("horizontal part of {written} times the vertical one"),
+            "pseudo-static: pore pressures and the stress of [initial] are those of the vertical part",
+        );
+    }
     let size = acceleration[0].hypot(acceleration[1]).hypot(acceleration[2]);
     let off = (size / STANDARD_GRAVITY - 1.0).abs();
     if off <= 0.01 && off > NEARLY_STANDARD {
@@ -350,7 +360,7 @@ fn gravity(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option
     if end.is_some_and(|end| ramp > end) {
         report.warn(format!("gravity.ramp: {ramp} is beyond the end of the run; gravity is never fully applied"));
     }
-    Some(Gravity { acceleration, ramp })
+    Some(gravity)
 }
 
 /// The method of stabilisation; none after an error.

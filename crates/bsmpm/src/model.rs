@@ -42,23 +42,41 @@ pub enum Weighting {
     Volume,
 }
 
-/// Body force per mass that grows linearly over a ramp.
+/// Body force per mass that grows linearly over a ramp: weight along the last axis, and across it in a pseudo-static
+/// analysis the inertia of an earthquake (Terzaghi, 1950).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gravity<const D: usize> {
     /// m/s2  when fully applied
     pub acceleration: Vector<D>,
     /// s (or pseudo-time) over which it grows; 0: at once
     pub ramp: f64,
+    /// Whether the vertical part acts in full from time 0, in equilibrium with a stress at the start. The ramp is then
+    /// that of the horizontal part alone.
+    pub starts_vertical: bool,
 }
 
 impl<const D: usize> Gravity<D> {
     /// Acceleration at time `t`, m/s2.
     pub fn at(&self, t: f64) -> Vector<D> {
-        self.acceleration * self.grown(t)
+        let mut acceleration = self.acceleration * self.ramped(t);
+        acceleration[D - 1] = self.acceleration[D - 1] * self.grown(t);
+        acceleration
     }
 
-    /// Part of it that acts at time `t`.
+    /// The same without its horizontal part.
+    pub fn vertical(&self) -> Self {
+        let mut acceleration = Vector::zeros();
+        acceleration[D - 1] = self.acceleration[D - 1];
+        Self { acceleration, ..*self }
+    }
+
+    /// Part of the vertical acceleration that acts at time `t`.
     pub fn grown(&self, t: f64) -> f64 {
+        if self.starts_vertical { 1.0 } else { self.ramped(t) }
+    }
+
+    /// Part of the ramp that is over at time `t`.
+    fn ramped(&self, t: f64) -> f64 {
         if self.ramp > 0.0 { (t / self.ramp).clamp(0.0, 1.0) } else { 1.0 }
     }
 }

@@ -1,6 +1,6 @@
 //! Stages: which bodies are there when, what acts on them, and which laws they follow.
 
-use super::{Body, Case, DrainSite, Face, MotionPath, NamedMaterial, Shares, Support, keeps_direction};
+use super::{Body, Case, DrainSite, Face, Gravity, MotionPath, NamedMaterial, Shares, Support, keeps_direction};
 use bsmpm::boundary::{Contact, Idle};
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
@@ -147,7 +147,9 @@ impl Case {
         let acts = |load: usize| self.acts_since(Acting::Load(load), 0.0).is_some();
         let all = tractions.chain(forces).enumerate();
         let sudden = all.filter(|(load, (_, ramp, amplitude))| is_sudden(*ramp, amplitude) && acts(*load));
-        sudden.map(|(_, (name, ..))| name).collect()
+        let is_pushed = |gravity: &Gravity| gravity.ramp == 0.0 && !gravity.is_straight(self.grid.dims());
+        let inertia = self.gravity.as_ref().is_some_and(is_pushed).then(|| "the horizontal gravity".to_owned());
+        sudden.map(|(_, (name, ..))| name).chain(inertia).collect()
     }
 
     /// Whether bodies that are there as long as a strip or load acts satisfy `holds`.

@@ -136,8 +136,20 @@ static GRAVITY: Table = Table {
     header: "[gravity]",
     doc: "Body force per mass",
     keys: &[
-        key("acceleration", Vector(In::Acceleration, Range::ANY), Required, "when fully applied"),
-        key("ramp", Quantity(In::Time, Range::NOT_NEGATIVE), Default("0.0"), "time over which it grows; 0: at once"),
+        key(
+            "acceleration",
+            Vector(In::Acceleration, Range::ANY),
+            Required,
+            "when fully applied. A horizontal part in a quasi-static analysis is the inertia of a pseudo-static one: the \
+             seismic coefficient times 9.81. Pore pressures and the stress of [initial] are those of the vertical part",
+        ),
+        key(
+            "ramp",
+            Quantity(In::Time, Range::NOT_NEGATIVE),
+            Default("0.0"),
+            "time over which it grows; 0: at once. With [initial] the horizontal part alone grows, as the vertical part \
+             acts from the start",
+        ),
     ],
     exclusive: &[],
 };

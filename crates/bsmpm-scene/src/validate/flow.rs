@@ -16,7 +16,8 @@ use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
 use crate::report::Report;
-use crate::words::{Drainage, Side};
+use crate::words::{AnalysisType, Drainage, Geometry, Side};
+use bsmpm::model::Regime;
 use bsmpm::water::flow::{Course, Given, Motion, Permeability, PermeabilityLaw, Soil};
 use bsmpm::water::retention::{Curve, Measured, Retention};
 
@@ -108,7 +109,10 @@ fn unit_weight(root: &Record) -> Option<f64> {
     let given = root.record("water").map_or(Some(WATER), |water| water.number("unit_weight"))?;
     let Some(gravity) = root.record("gravity") else { return Some(given) };
     let [x, y, z] = gravity.vector("acceleration")?;
-    Some(given / STANDARD_GRAVITY * x.hypot(y).hypot(z))
+    let is_static = root.record("analysis")?.word("type").map(AnalysisType::regime) == Some(Regime::QuasiStatic);
+    let up = root.word::<Geometry>("geometry")?.dims() - 1;
+    let pull = if is_static { [x, y, z][up].abs() } else { x.hypot(y).hypot(z) };
+    Some(given / STANDARD_GRAVITY * pull)
 }
 
 /// What a material is to water; the outer option is `None` after an error.

@@ -245,7 +245,7 @@ pub(super) fn increasing<'a>(
 pub(super) fn initial(
     root: &Record,
     (materials, bodies): (Option<&[NamedMaterial]>, Option<&[Body]>),
-    gravity: Option<&Gravity>,
+    (gravity, regime): (Option<&Gravity>, Option<Regime>),
     report: &mut Report<'_>,
 ) -> Option<Initial> {
     let record = root.record("initial");
@@ -267,8 +267,7 @@ pub(super) fn initial(
         });
     }
     let dims = root.word::<Geometry>("geometry")?.dims();
-    let is_level = |gravity: &&Gravity| gravity.acceleration[..dims - 1].iter().all(|along| *along == 0.0);
-    if let Some(gravity) = gravity.filter(|of| !is_level(of) || of.acceleration[dims - 1] >= 0.0) {
+    if let Some(gravity) = gravity.filter(|of| !of.acts_down(dims, regime)) {
         let message = format!("{:?} is not straight down, which a state by k0 needs", &gravity.acceleration[..dims]);
         root.record("gravity")?.error("acceleration", message, report);
     }
@@ -353,8 +352,10 @@ fn loaded(
     if !root.gives("gravity") {
         report.error(record.origin, &record.path, "a stress at the start needs [gravity]");
     }
+    let dims = root.word::<Geometry>("geometry").map_or(3, Geometry::dims);
     if let (Some(gravity), Some(written)) = (gravity, root.record("gravity"))
         && gravity.ramp > 0.0
+        && gravity.is_straight(dims)
     {
         let message =
             format!("{} with [initial]: gravity acts in full from the start then; allowed: 0.0", gravity.ramp);

@@ -31,7 +31,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
     match &case.gravity {
         None => material.error(KEY, "nothing weighs without [gravity]", report),
-        Some(gravity) if !super::water::is_down(&gravity.acceleration[..case.grid.dims()]) => {
+        Some(gravity) if !gravity.acts_down(case.grid.dims(), Some(case.analysis.regime)) => {
             let message =
                 format!("gravity.acceleration = {:?} is not straight down", &gravity.acceleration[..case.grid.dims()]);
             material.error(KEY, message, report);

@@ -7,6 +7,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Side, Word};
+use bsmpm::model::Regime;
 use bsmpm::water::ambient::{Ambient, LevelAt};
 
 /// Slope of a phreatic line up to which the depth straight below it is taken for the pressure without a word: along a
@@ -17,7 +18,7 @@ const GENTLE: f64 = 0.25;
 pub(super) fn read(
     root: &Record,
     (grid, gravity): (Option<&GridSpec>, Option<&Gravity>),
-    end: Option<f64>,
+    (regime, end): (Option<Regime>, Option<f64>),
     report: &mut Report<'_>,
 ) -> Option<Water> {
     let Some(record) = root.record("water") else {
@@ -42,7 +43,7 @@ pub(super) fn read(
         report.error(record.origin, &record.path, "water weighs nothing without [gravity]");
     }
     let (acceleration, axes) = (gravity?.acceleration, grid?.dims());
-    if !is_down(&acceleration[..axes]) {
+    if !gravity?.acts_down(axes, regime) {
         let message = format!("{:?} is not straight down, which still water needs", &acceleration[..axes]);
         root.record("gravity")?.error("acceleration", message, report);
     }
@@ -55,11 +56,6 @@ pub(super) fn read(
         report.note(record.path_of("unit_weight"), format!("{unit_weight}"), reason);
     }
     Some(Water { unit_weight, table })
-}
-
-/// Whether a vector has something along the last axis only, and that downwards.
-pub(super) fn is_down(vector: &[f64]) -> bool {
-    vector.split_last().is_some_and(|(along, across)| *along < 0.0 && across.iter().all(|part| *part == 0.0))
 }
 
 /// The water table, somewhere above the grid's base.

@@ -154,6 +154,19 @@ fn still_water() {
     verify_all(STATIC, water::RATIO);
 }
 
+/// A horizontal part of gravity is the inertia of a pseudo-static analysis. In dynamics it inclines the grid, in which
+/// water does not lie level.
+#[test]
+fn gravity_is_inclined_in_quasi_static_analyses_alone() {
+    let inclined = WET.replace("[0.0, -9.81]", "[1.0, -9.81]");
+    let case = Case::from_text("case.toml", &inclined, &[]).unwrap();
+    assert!(case.notes.iter().any(|note| note.key == "gravity.acceleration"), "{:?}", case.notes);
+    let dynamic =
+        WET.replace("type  = \"quasi-static\"\nend   = 1.0\nsteps = 4", "type  = \"dynamic\"\nend   = 1.0\ndt = 0.25");
+    let says = "is not straight down, which still water needs";
+    verify_all(&dynamic, &[row("[0.0, -9.81]", "[1.0, -9.81]", "gravity.acceleration", says)]);
+}
+
 #[test]
 fn three_dimensions() {
     verify_all(SOLID, solid::SOLID);

@@ -115,7 +115,7 @@ fn thrown(is_mirrored: bool, is_swapped: bool, method: Stabilisation) -> Points<
         .support(Support::roller(wall, is_mirrored))
         .support(Support::fixed(floor, false))
         .stabilised(method);
-    scene.model.gravity = Some(Gravity { acceleration: g.into(), ramp: 0.0 });
+    scene.model.gravity = Some(Gravity { acceleration: g.into(), ramp: 0.0, starts_vertical: false });
     scene.points.x.iter_mut().for_each(|x| *x += Vector::from(shift));
     scene.points.sort_by_cell(&scene.model.grid);
     scene.solved(0.01, 1.0).0.points

@@ -1,6 +1,6 @@
 //! Still water as flow sees it: its pressure, its gradient, and what drives water of this weight against it.
 
-use crate::model::Model;
+use crate::model::{Gravity, Model, Regime};
 use crate::points::Points;
 use crate::tensor::Vector;
 use crate::water::Water;
@@ -65,23 +65,28 @@ impl<const D: usize> Water<D> {
     }
 
     /// Pa/m  the water's own weight at time `t`: against the last axis where there is still water, which it holds in
-    /// balance; else as the model's gravity acts
+    /// balance; else as the model's gravity acts, in a quasi-static analysis its vertical part
     pub fn weight<K>(&self, model: &Model<K, D>, t: f64) -> Vector<D> {
         if self.ambient != Ambient::None {
             let mut down = Vector::zeros();
             down[D - 1] = -self.unit_weight;
             return down;
         }
-        let whole = model.gravity.map_or(0.0, |gravity| gravity.acceleration.norm());
-        match model.gravity {
-            Some(gravity) if whole > 0.0 => gravity.at(t) * (self.unit_weight / whole),
-            _ => Vector::zeros(),
-        }
+        let Some(gravity) = weighing(model) else { return Vector::zeros() };
+        let whole = gravity.acceleration.norm();
+        if whole > 0.0 { gravity.at(t) * (self.unit_weight / whole) } else { Vector::zeros() }
     }
 
     /// kg/m3
     pub fn density<K>(&self, model: &Model<K, D>) -> f64 {
-        let whole = model.gravity.map_or(0.0, |gravity| gravity.acceleration.norm());
+        let whole = weighing(model).map_or(0.0, |gravity| gravity.acceleration.norm());
         self.unit_weight / if whole > 0.0 { whole } else { GRAVITY }
     }
+}
+
+/// What water weighs by: pseudo-static inertia, the horizontal part of gravity in a quasi-static analysis, leaves pore
+/// pressures as they are.
+fn weighing<K, const D: usize>(model: &Model<K, D>) -> Option<Gravity<D>> {
+    let is_static = model.regime == Regime::QuasiStatic;
+    model.gravity.map(|gravity| if is_static { gravity.vertical() } else { gravity })
 }

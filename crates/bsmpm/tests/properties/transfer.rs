@@ -126,7 +126,7 @@ fn a_linear_displacement_field_has_its_exact_gradient_at_every_point() {
 
 fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
     let mut scene = scattered::<K, D>(order);
-    scene.model.gravity = Some(Gravity { acceleration: Vector::repeat(-9.81), ramp: 0.0 });
+    scene.model.gravity = Some(Gravity { acceleration: Vector::repeat(-9.81), ramp: 0.0, starts_vertical: false });
     let (points, halo) = (&scene.points, scene.halo());
     let shape = Shape::at(&scene.model.grid, points).unwrap();
     let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 0.1), &halo).expect("no loads");

@@ -194,7 +194,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     pub fn gravity(mut self, g: f64, ramp: f64) -> Self {
         let mut acceleration = Vector::zeros();
         acceleration[D - 1] = -g;
-        self.model.gravity = Some(Gravity { acceleration, ramp });
+        self.model.gravity = Some(Gravity { acceleration, ramp, starts_vertical: false });
         self
     }
 

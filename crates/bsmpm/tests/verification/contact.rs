@@ -27,7 +27,11 @@ fn block(n: usize, slope: f64, law: Contact, regime: Regime) -> Scene<PlaneStrai
         .body([n / 2..n / 2 + n, 0..n / 2], 2, 1000.0, |_| Vector::zeros())
         .support(Support::contact(1, false, law));
     let theta = slope.atan();
-    scene.model.gravity = Some(Gravity { acceleration: Vector::from([G * theta.sin(), -G * theta.cos()]), ramp: RAMP });
+    scene.model.gravity = Some(Gravity {
+        acceleration: Vector::from([G * theta.sin(), -G * theta.cos()]),
+        ramp: RAMP,
+        starts_vertical: false,
+    });
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
     scene
 }
@@ -141,7 +145,7 @@ fn in_space_a_block_slides_along_the_fall_line() {
     let mut scene = Scene::<Solid, 3>::new(axes, hencky(1e7, 0.3), Regime::Dynamic)
         .body([1..3, 1..3, 0..1], 2, 1000.0, |_| Vector::zeros())
         .support(Support::contact(2, false, rough(0.2)));
-    scene.model.gravity = Some(Gravity { acceleration: [3.0, 4.0, -10.0].into(), ramp: RAMP });
+    scene.model.gravity = Some(Gravity { acceleration: [3.0, 4.0, -10.0].into(), ramp: RAMP, starts_vertical: false });
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
     let mut force = Vec::new();
     scene.march(0.02, 0.4, |_, accepted| force.clone_from(&accepted.report.reactions[0]));

@@ -182,7 +182,7 @@ fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
     ] {
         let mut scene = collapse(method, Separation::Forgotten);
         scene.model.materials = vec![material];
-        scene.model.gravity = Some(Gravity { acceleration: [0.0, -10.0].into(), ramp: 0.0 });
+        scene.model.gravity = Some(Gravity { acceleration: [0.0, -10.0].into(), ramp: 0.0, starts_vertical: false });
         let (schedule, halo) = (Schedule::new(2e-3, 0.14, []), scene.halo());
         let (mut solver, mut stepper) = (Skyline::new(&scene.model.grid), Stepper::new(scene.model.grid.nodes() * 2));
         let ended = loop {
@@ -203,7 +203,7 @@ fn the_books_close_with_consistent_mass() {
     // Without supports the points gain what the nodes gain or less, whatever they do.
     let bar = kept(bar(Stabilisation::None).with_mass(MassMatrix::Consistent), PERIOD / 80.0, PERIOD);
     let mut sand = collapse(Stabilisation::ConsistentFBar, Separation::Forgotten).with_mass(MassMatrix::Consistent);
-    sand.model.gravity = Some(Gravity { acceleration: [0.0, -10.0].into(), ramp: 0.0 });
+    sand.model.gravity = Some(Gravity { acceleration: [0.0, -10.0].into(), ramp: 0.0, starts_vertical: false });
     let sand = kept(sand, 2e-3, 0.2);
     for (name, course) in [("bar", &bar), ("sand", &sand)] {
         tell(name, course);

@@ -77,7 +77,7 @@ fn exchanged_axes_give_the_exchanged_result() {
             .support(Support::roller(other, false))
             .support(Support::fixed(1 - other, false))
             .stabilised(method);
-        scene.model.gravity = Some(Gravity { acceleration: swap([0.0, -2.0]), ramp: 0.0 });
+        scene.model.gravity = Some(Gravity { acceleration: swap([0.0, -2.0]), ramp: 0.0, starts_vertical: false });
         scene.solved(0.01, 0.5).0.points
     };
     for method in METHODS {

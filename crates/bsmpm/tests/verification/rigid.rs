@@ -59,7 +59,7 @@ fn velocity(points: &Points<2>) -> f64 {
 /// Gravity that grows over a ramp, inclined by `slope` = tan(theta).
 fn inclined(slope: f64) -> Gravity<2> {
     let theta = slope.atan();
-    Gravity { acceleration: Vector::from([G * theta.sin(), -G * theta.cos()]), ramp: RAMP }
+    Gravity { acceleration: Vector::from([G * theta.sin(), -G * theta.cos()]), ramp: RAMP, starts_vertical: false }
 }
 
 /// Elastic ground of `cells` of `h` m, held at its sides and bottom.
