@@ -28,6 +28,9 @@ pub struct FailureReport {
     pub tolerances: Option<FailureMeasures>,
     /// The worst nodes or points of all ranks, worst first.
     pub worst: Vec<Worst>,
+    /// The name of the rigid body that nothing holds, where that is the cause.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loose: Option<String>,
     /// What may help.
     pub advice: Vec<String>,
 }

@@ -84,6 +84,14 @@ impl Frame {
         }
     }
 
+    /// The numbers of the field `name` that numbers points, if the frame has it.
+    pub fn numbers(&self, name: &str) -> Option<&[u64]> {
+        match &self.fields.iter().find(|field| field.name == name)?.values {
+            FieldValues::U64(numbers) => Some(numbers),
+            _ => None,
+        }
+    }
+
     /// The same without its points.
     pub fn without_points(&self) -> Self {
         let none = |values: &FieldValues| match values {

@@ -367,6 +367,7 @@ impl Ledger {
             reason: report.attempts.last().cloned().unwrap_or_default(),
             residuals: report.history.iter().map(|measures| measures.energy).collect(),
             worst: report.worst.first().cloned(),
+            loose: report.loose.clone(),
         });
         report.write(self.directory.path())
     }

@@ -64,6 +64,19 @@ pub enum Error {
         /// What was found, and what to try.
         reason: String,
     },
+    /// A trial of a search failed because a rigid body slipped, which says nothing of the ground.
+    #[error(
+        "rigid body \"{name}\" slips in the trial of the {value} {trial}, and nothing else holds it: this is no failure of the \
+         ground. Take that motion out of its `free`, increase its friction, or replace it by a [[traction]]"
+    )]
+    LooseBody {
+        /// What trials differ by.
+        value: &'static str,
+        /// That of the trial.
+        trial: f64,
+        /// Of the body.
+        name: String,
+    },
     /// A load has reached no limit.
     #[error("no limit was reached; the table says why")]
     NoLimitLoad,
@@ -124,9 +137,11 @@ impl Error {
             Self::Usage { .. } => exit::USAGE,
             Self::Missing { .. } => exit::MISSING,
             Self::BadReference { .. } | Self::BadCase { .. } | Self::NoFactor { .. } => exit::CASE,
-            Self::NoStableState { .. } | Self::NoResult { .. } | Self::Element { .. } | Self::NoLimitLoad => {
-                exit::NO_CONVERGENCE
-            }
+            Self::NoStableState { .. }
+            | Self::LooseBody { .. }
+            | Self::NoResult { .. }
+            | Self::Element { .. }
+            | Self::NoLimitLoad => exit::NO_CONVERGENCE,
             Self::Run { code, .. } => *code,
             Self::NotValid { .. } => exit::CHECK,
             Self::Launch { .. } => exit::WRITE,

@@ -1,6 +1,7 @@
-//! `bsmpm fos`: the factor of safety of a case by strength reduction. The case is read in `subject`, refused in
-//! `refusal`, factors are chosen in `search`, trials are made in `trial` and judged in `curve`, results are set in
-//! `report` and drawn in `picture`.
+//! `bsmpm fos`: the factor of safety of a case by strength reduction, or its critical seismic coefficient. What is
+//! sought stands in `sought`; the case is read in `subject` and refused in `refusal`, factors are chosen in `search`,
+//! trials are made in `trial`, measured in `moved` and judged in `curve`, results are set in `report` and drawn in
+//! `picture`.
 //!
 //! Loading soil is path dependent, so every trial carries its load from zero, or goes on from the end of a stage that
 //! was made with the whole strength: a state of another strength is no state on the way. What could be saved that way
@@ -20,16 +21,20 @@ use crate::{Error, case};
 mod curve;
 mod guess;
 mod jobs;
+mod moved;
 mod picture;
 mod refusal;
 mod report;
 mod search;
+mod sought;
 mod subject;
 mod trial;
 
 use report::FosReport;
-use search::{GREATEST, LEAST, SearchPlan};
-use subject::Subject;
+use search::{GREATEST, SearchPlan};
+pub use sought::PushedSide;
+use sought::{LEAST, Sought};
+use subject::{FosQuestion, Subject};
 use trial::{FosTrial, Trials};
 
 /// Of the files of its tables.
@@ -40,11 +45,17 @@ const NARROWEST: f64 = 1e-4;
 /// What to search, and how.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Every trial is the case with [strength_reduction] factor = F, loaded from zero. Its largest displacement tells: the factor
+Every trial is the case with [strength_reduction] factor = F, loaded from zero, and is judged by its displacement: what the
+material of a block of two cells along each axis has moved at least, so that a single point does not decide. The factor
 of safety is where the branch after failure (5 to 20 times the elastic displacement), continued back, meets the branch
 before it; coarsely, where the elastic displacement has doubled. Both are printed as bands [last stable, first failed]. A
 trial without equilibrium counts as failed. The elastic displacement is that of the trial 0: every material by its elastic
-law, without strength that could limit the stress.
+law, without strength that could limit the stress. --region restricts all this to the material of a box.
+
+With --seismic DIRECTION the strength stays as it is. Trials differ by a horizontal acceleration of k times the vertical
+gravity that pushes the ground to that side; the critical seismic coefficient is the k at which it fails, found in the
+same manner. Displacements are compared with those of the elastic body under the same inertia. Pore pressures are those
+of vertical gravity.
 
 The factor belongs to the body as it is drawn, and does not depend on its stiffness: where the load would strain it by more
 than 0.2 %, the trials' Young's moduli are multiplied until it does not, and displacements told as if they had not been.
@@ -67,21 +78,30 @@ for next are begun in advance; they count only if they are asked for, so the res
 be asked for any more gets TERM, which COMMAND must pass on, as mpirun and srun do; trials/ may hold more than the table.
 
 Exit codes: 0 found, or stable up to TO (it says so); 2 command line; 65 the case has errors or no factor of safety; 66 no
-such case; 80 no stable state was found; that of a trial that broke, as 70, 71, 73, 74.
+such case; 80 no stable state was found, or a trial failed because a rigid body slipped that nothing else holds; that of a
+trial that broke, as 70, 71, 73, 74.
 
 Examples:
   bsmpm fos cases/slope_stability.toml
   bsmpm fos cases/excavation.toml --stage \"pit 1\" --to 4
+  bsmpm fos cases/slope_stability.toml --seismic right
   bsmpm fos case.toml --width 0.01 --set grid.cell=\"0.5 m\" -o fine -- mpirun -n 4 bsmpm-par")]
 pub struct FosArguments {
     /// The case file: quasi-static or, with --stage, a consolidation, with a plastic material and a load
     pub case: PathBuf,
-    /// The least factor
-    #[arg(long, value_name = "FACTOR", default_value_t = 0.5)]
-    pub from: f64,
-    /// The greatest factor
-    #[arg(long, value_name = "FACTOR", default_value_t = 3.0)]
-    pub to: f64,
+    /// The least factor, or coefficient [default: 0.5; with --seismic 0.02]
+    #[arg(long, value_name = "FACTOR")]
+    pub from: Option<f64>,
+    /// The greatest factor, or coefficient [default: 3; with --seismic 1]
+    #[arg(long, value_name = "FACTOR")]
+    pub to: Option<f64>,
+    /// Find the critical seismic coefficient of ground that is pushed to this side instead
+    #[arg(long, value_name = "DIRECTION", conflicts_with = "stage")]
+    pub seismic: Option<PushedSide>,
+    /// Judge the material alone that lies in a box before it moves: its lower, then its upper coordinates in m, as
+    /// 10,0,30,8
+    #[arg(long, value_name = "BOX", value_delimiter = ',', allow_hyphen_values = true)]
+    pub region: Vec<f64>,
     /// At the end of the stage of this name, in the state that it leaves; "start": of what is before the first stage;
     /// "end": of the run, as for a case that begins with `[initial]`. Factors are at least 1 then
     #[arg(long, value_name = "NAME")]
@@ -90,9 +110,9 @@ pub struct FosArguments {
     /// strain, as in a sudden failure; without it every point keeps its pore pressure, as in a slow one
     #[arg(long, requires = "stage")]
     pub undrained: bool,
-    /// The width of the bands
-    #[arg(long, value_name = "WIDTH", default_value_t = 0.02)]
-    pub width: f64,
+    /// The width of the bands [default: 0.02; with --seismic 0.01]
+    #[arg(long, value_name = "WIDTH")]
+    pub width: Option<f64>,
     /// Trials at the same time; the result is the same for any N [default: the cores, divided by the launcher's ranks]
     #[arg(long, value_name = "N")]
     pub jobs: Option<usize>,
@@ -137,7 +157,7 @@ pub fn run(arguments: &FosArguments, told: impl FnMut(&str)) -> Result<(String, 
 pub(crate) fn factor(arguments: &FosArguments) -> Result<FoundFactor, Error> {
     let (report, _) = found(arguments, |_| ())?;
     let trials = || report.trials.iter().map(|row| &row.trial);
-    let finding = report.factor_of_safety;
+    let finding = report.finding;
     let middle = || Some(f64::midpoint(finding.last_stable?, finding.first_failed?));
     Ok(FoundFactor {
         factor: finding.estimate.or_else(middle),
@@ -153,8 +173,14 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     let (plan, jobs) = (arguments.plan()?, command::jobs(arguments.jobs, &command)?);
     // Whatever the number of jobs: threads in BLAS would sum in another order.
     let solver = SolverProgram { command: &command, side_by_side: true };
-    let stage = (arguments.stage.as_deref(), arguments.undrained);
-    let subject = Subject::read(&arguments.case, &arguments.set, (plan.from, stage))?;
+    let question = FosQuestion {
+        sought: plan.sought,
+        from: plan.from,
+        stage: arguments.stage.as_deref(),
+        undrained: arguments.undrained,
+        region: &arguments.region,
+    };
+    let subject = Subject::read(&arguments.case, &arguments.set, &question)?;
     let plan = SearchPlan { softens: subject.softens, ..plan };
     solver.check()?;
     let output = arguments.directory();
@@ -165,9 +191,11 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     {
         fs::remove_file(&path).map_err(bsmpm_io::Error::file("delete", &path))?;
     }
-    let mut trials = Trials { solver, subject: &subject, output: &output, force: arguments.force, stage: None };
+    let force = arguments.force;
+    let mut trials = Trials { solver, subject: &subject, output: &output, force, stage: None, pushed: None };
     trials.stage = trials.stage(&mut told)?;
-    let (curve, made) = jobs::find(plan, jobs, &trials, |trial| told(&line(trial)))?;
+    trials.pushed = trials.pushed()?;
+    let (curve, made) = jobs::find(plan, jobs, &trials, |trial| told(&line(trial, plan.sought)))?;
     let mut report = FosReport::of(&subject, plan, &command, &curve, made);
     report.jobs = jobs;
     report.seconds = start.elapsed().as_secs_f64();
@@ -176,19 +204,41 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
 }
 
 impl FosArguments {
+    /// Those of a case, without options.
+    pub fn of(case: PathBuf) -> Self {
+        Self {
+            case,
+            from: None,
+            to: None,
+            seismic: None,
+            region: Vec::new(),
+            stage: None,
+            undrained: false,
+            width: None,
+            jobs: None,
+            set: Vec::new(),
+            output: None,
+            force: false,
+            command: Vec::new(),
+        }
+    }
+
     fn plan(&self) -> Result<SearchPlan, Error> {
         let usage = |reason: String| Err(Error::Usage { reason });
-        let Self { from, to, width, .. } = *self;
+        let sought = self.seismic.map_or(Sought::FactorOfSafety, Sought::SeismicCoefficient);
+        let ([from, to], width) = sought.range();
+        let (from, to, width) = (self.from.unwrap_or(from), self.to.unwrap_or(to), self.width.unwrap_or(width));
         // A stage that came to its end stands.
         let from = if self.stage.is_some() { from.max(1.0) } else { from };
+        let least = if sought.is_seismic() { 0.0 } else { LEAST };
         // Written so that what is no number is refused, too.
-        if !(LEAST < from && from < to && to <= GREATEST) {
-            return usage(format!("--from {from} --to {to}: allowed is {LEAST} < FROM < TO <= {GREATEST}"));
+        if !(least < from && from < to && to <= GREATEST) {
+            return usage(format!("--from {from} --to {to}: allowed is {least} < FROM < TO <= {GREATEST}"));
         }
         if !(NARROWEST <= width && width <= to - from) {
             return usage(format!("--width {width}: allowed is {NARROWEST} <= WIDTH <= TO - FROM"));
         }
-        Ok(SearchPlan { from, to, width, softens: false })
+        Ok(SearchPlan { from, to, width, softens: false, sought })
     }
 
     fn directory(&self) -> PathBuf {
@@ -196,11 +246,12 @@ impl FosArguments {
     }
 }
 
-fn line(trial: &FosTrial) -> String {
+fn line(trial: &FosTrial, sought: Sought) -> String {
     let kept = if trial.kept { ", kept" } else { "" };
     let early = trial.end.early().map(|(load, reason)| format!(", ended at {load:.3} of the load: {reason}"));
     format!(
-        "factor {}: displacement {:.4e} after {} iterations, {:.1} s{kept}{}",
+        "{} {}: displacement {:.4e} after {} iterations, {:.1} s{kept}{}",
+        sought.value(),
         trial.factor,
         trial.displacement,
         trial.iterations,

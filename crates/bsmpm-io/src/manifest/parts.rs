@@ -408,6 +408,9 @@ pub struct ManifestFailure {
     pub residuals: Vec<Option<f64>>,
     /// Where it was worst.
     pub worst: Option<Worst>,
+    /// The name of the rigid body that nothing holds, where that is the cause.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loose: Option<String>,
 }
 
 impl ManifestFailure {

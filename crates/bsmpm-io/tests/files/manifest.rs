@@ -32,7 +32,7 @@ fn manifest() -> Manifest {
     manifest.indicators.insert("slip".into(), Indicator::new(0.02, "-", "slip over motion", [0.0, 0.01]));
     let worst = Worst { kind: "node".into(), id: 7, position: vec![0.5, 0.25], force: Some(2.0) };
     let (residuals, reason) = (vec![Some(1.0), None], "no convergence".to_owned());
-    manifest.failure = Some(ManifestFailure { step: 3, time: 0.1, reason, residuals, worst: Some(worst) });
+    manifest.failure = Some(ManifestFailure { step: 3, time: 0.1, reason, residuals, worst: Some(worst), loose: None });
     manifest
 }
 

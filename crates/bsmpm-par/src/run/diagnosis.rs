@@ -34,8 +34,15 @@ pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case:
         history,
         tolerances,
         worst: last.map_or_else(Vec::new, |error| worst(world, places_of(error, iterated), &case.grid)),
+        loose: last.and_then(|error| loose(error, case)),
         advice: last.map_or_else(Vec::new, |error| advice(error, case)),
     }
+}
+
+/// The name of the rigid body that nothing holds, if that is the error.
+fn loose(error: &StepError, case: &Case) -> Option<String> {
+    let StepError::Loose { body } = error else { return None };
+    case.rigid.get(*body).map(|rigid| rigid.name.clone())
 }
 
 /// The error whose places are told: the last one, or where that names none the last that iterated.

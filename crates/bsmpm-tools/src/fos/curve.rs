@@ -15,7 +15,7 @@ const STRAIGHT: f64 = 1.25;
 pub(super) struct CurveState {
     /// by which the strength is divided
     pub factor: f64,
-    /// the largest displacement, in the unit of the history; of the last equilibrium that was found
+    /// the displacement that decides, in the unit of the history; of the last equilibrium that was found
     pub displacement: f64,
     /// whether equilibrium was found under the whole load
     pub whole: bool,

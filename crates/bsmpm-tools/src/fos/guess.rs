@@ -63,8 +63,8 @@ fn outcomes(factor: f64, states: &[CurveState]) -> impl Iterator<Item = (f64, Cu
 
 #[cfg(test)]
 mod tests {
-    use super::super::search::ELASTIC;
     use super::super::search::tests::{PLAN, hockey};
+    use super::super::sought::ELASTIC;
     use super::*;
 
     fn state(kink: f64, factor: f64) -> CurveState {

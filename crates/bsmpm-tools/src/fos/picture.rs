@@ -34,7 +34,7 @@ const MECHANISM: [(FieldName, &str, &str); 2] =
 pub(super) fn draw(report: &FosReport, subject: &Subject, output: &Path) -> Result<Vec<&'static str>, Error> {
     let mut names = vec![NAMES[0]];
     FactorChart::of(report, label(report, subject, output)?).draw().save(&output.join(NAMES[0]))?;
-    let failed = report.factor_of_safety.first_failed.and_then(|factor| report.at(factor));
+    let failed = report.finding.first_failed.and_then(|factor| report.at(factor));
     if let Some(row) = failed {
         names.extend(mechanism(&output.join(&row.trial.directory), subject.end, output)?);
     }
@@ -60,7 +60,7 @@ fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<&'static s
 
 /// What the vertical axis shows: the case's own quantity if it has a scale, else parts of the elastic displacement.
 fn label(report: &FosReport, subject: &Subject, output: &Path) -> Result<Option<String>, Error> {
-    let Some(row) = report.trials.first().filter(|_| subject.is_scaled) else { return Ok(None) };
+    let Some(row) = report.trials.first().filter(|_| subject.scale != 1.0) else { return Ok(None) };
     let record = RunRecord::read(&output.join(&row.trial.directory))?;
     Ok(record.column(&subject.column).map(|column| column.label()))
 }
@@ -81,7 +81,7 @@ struct FactorChart<'a> {
 impl<'a> FactorChart<'a> {
     fn of(report: &'a FosReport, label: Option<String>) -> Self {
         let scale = if label.is_some() { 1.0 } else { 1.0 / report.elastic_displacement };
-        let ends = [report.factor_of_safety.first_failed, report.kink.map(|kink| kink.after.reaches(fallen(report)))];
+        let ends = [report.finding.first_failed, report.kink.map(|kink| kink.after.reaches(fallen(report)))];
         let farthest = ends.into_iter().flatten().fold(0.0, f64::max);
         // Far beyond failure the displacements would leave no room for those before it.
         let is_seen = |row: &&FosRow| {
@@ -90,7 +90,7 @@ impl<'a> FactorChart<'a> {
         };
         let places = |verdict: Verdict| {
             let rows = report.trials.iter().filter(|row| row.verdict == verdict).filter(is_seen);
-            rows.map(|row| (row.trial.factor, scale * row.trial.displacement)).collect::<Vec<_>>()
+            rows.map(|row| (row.trial.factor, scale * row.growth * report.elastic_displacement)).collect::<Vec<_>>()
         };
         let group = |name: &str, verdict: Verdict, colour: Rgb| {
             (LegendEntry { name: name.to_owned(), colour, mark: Mark::Points }, places(verdict))
@@ -112,8 +112,8 @@ impl<'a> FactorChart<'a> {
             self.groups.iter().map(|(entry, _)| entry).chain(lines.into_iter().flatten()).collect();
         let axes = self.axes(ABOVE + legend::height(&entries, SHEET.0 - 80.0) + 20.0);
         let mut canvas = Canvas::new(SHEET.0, SHEET.1);
-        let FosReport { factor_of_safety: band, conditions, .. } = self.report;
-        let below = format!("Factor of safety {}; {}", band.words(), conditions.lines()[0]);
+        let FosReport { finding: band, conditions, .. } = self.report;
+        let below = format!("{} {}; {}", self.report.plan.sought.title(), band.words(), conditions.lines()[0]);
         title(&mut canvas, SHEET.0, &self.report.title, &below);
         legend::draw(&mut canvas, &entries, 40.0, ABOVE, SHEET.0 - 80.0);
         if let (Some(low), Some(high)) = (band.last_stable, band.first_failed) {
@@ -127,7 +127,7 @@ impl<'a> FactorChart<'a> {
             let places: Vec<_> = places.iter().map(|&place| axes.place(place)).collect();
             entry.mark.draw(&mut canvas, &places, LINE, entry.colour);
         }
-        axes.draw(&mut canvas, Some(("Strength reduction factor", "-")), (&self.label, "-"));
+        axes.draw(&mut canvas, Some((self.report.plan.sought.label(), "-")), (&self.label, "-"));
         canvas
     }
 

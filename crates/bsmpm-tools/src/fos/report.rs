@@ -3,7 +3,9 @@
 use serde::Serialize;
 
 use super::curve::{Bracket, DOUBLED, FactorCurve, Kink};
-use super::search::{ELASTIC, SearchPlan};
+use super::moved::{Mechanism, PulledSide};
+use super::search::SearchPlan;
+use super::sought::{ELASTIC, PushedSide, Sought};
 use super::subject::{Conditions, Subject};
 use super::trial::{End, FosTrial};
 use crate::record::short;
@@ -17,6 +19,17 @@ pub(super) struct Finding {
     pub first_failed: Option<f64>,
     /// within the band
     pub estimate: Option<f64>,
+}
+
+/// The finding under the name of what was sought.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Found {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    factor_of_safety: Option<Finding>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    critical_seismic_coefficient: Option<Finding>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pushed_to: Option<PushedSide>,
 }
 
 /// How a trial is judged.
@@ -48,11 +61,19 @@ pub(super) struct FosReport {
     pub case: String,
     pub title: String,
     /// the one of the kink; where it shows none, the coarse one
-    pub factor_of_safety: Finding,
+    #[serde(skip)]
+    pub finding: Finding,
+    #[serde(flatten)]
+    pub found: Found,
     pub criteria: [Finding; 2],
-    /// the column of `history.csv` that is judged, and the displacement of the elastic body
+    /// what the case calls the largest displacement of any point
     pub column: String,
+    /// of the elastic body, as that of the trials
     pub elastic_displacement: f64,
+    /// in which material is judged: the lower and the upper corner, m; everywhere without
+    pub region: Option<[[f64; 3]; 2]>,
+    /// where the ground moves in the first trial that has failed
+    pub mechanism: Option<Mechanism>,
     pub conditions: Conditions,
     pub plan: SearchPlan,
     pub command: Vec<String>,
@@ -83,6 +104,17 @@ impl Finding {
     }
 }
 
+impl Found {
+    fn of(finding: Finding, sought: Sought) -> Self {
+        match sought {
+            Sought::FactorOfSafety => Self { factor_of_safety: Some(finding), ..Self::default() },
+            Sought::SeismicCoefficient(pushed) => {
+                Self { critical_seismic_coefficient: Some(finding), pushed_to: Some(pushed), ..Self::default() }
+            }
+        }
+    }
+}
+
 impl FosReport {
     pub fn of(
         subject: &Subject,
@@ -104,17 +136,28 @@ impl FosReport {
         let row = |trial: FosTrial| FosRow { verdict: verdict(&trial), growth: curve.growth(&trial.state()), trial };
         let mut rows: Vec<FosRow> = trials.into_iter().map(row).collect();
         rows.sort_by(|a, b| a.trial.factor.total_cmp(&b.trial.factor));
+        let at = |value: Option<f64>| rows.iter().find(|row| Some(row.trial.factor) == value).map(|row| &row.trial);
+        let mechanism = at(by_kink.first_failed).map(|trial| trial.mechanism.clone());
+        let of_ground = [
+            at(by_kink.last_stable).and_then(loose_points),
+            mechanism.as_ref().and_then(|mechanism| pulled_sides(mechanism, plan.sought)),
+        ];
+        let of_search = notes(curve, kink.as_ref(), &rows, subject);
+        let notes = [subject.notes(), of_search, of_ground.into_iter().flatten().collect()].concat();
         Self {
             case: subject.path().display().to_string(),
             title: subject.title.clone(),
-            factor_of_safety: by_kink,
+            finding: by_kink,
+            found: Found::of(by_kink, plan.sought),
             criteria: [by_kink, doubled],
             column: subject.column.clone(),
             elastic_displacement: curve.elastic(),
+            region: subject.counted.region,
+            mechanism,
             conditions: subject.conditions.clone(),
             plan,
             command: command.to_vec(),
-            notes: [subject.notes(), notes(curve, kink.as_ref(), &rows, plan)].concat(),
+            notes,
             trials: rows,
             jobs: 1,
             seconds: 0.0,
@@ -133,9 +176,12 @@ impl FosReport {
         let mut text = format!("{}\n{first}\n{second}\n\n{}", self.title, self.table());
         let [kink, doubled] = &self.criteria;
         let by = if self.plan.softens { "by the first failure:" } else { "by the kink:" };
-        text += &format!("\nfactor of safety, {by:<16} {}\n", kink.words());
+        text += &format!("\n{}, {by:<16} {}\n", self.plan.sought.name(), kink.words());
         text += &format!("by twice the elastic displacement: {}\n", doubled.words());
         text += self.which();
+        if let Some(mechanism) = &self.mechanism {
+            text += &format!("mechanism of the first failed trial: {}\n", mechanism.words());
+        }
         self.notes.iter().for_each(|note| text += &format!("note: {note}\n"));
         let cpu: f64 = self.trials.iter().map(|row| row.trial.cpu_seconds).sum();
         let kept = self.trials.iter().filter(|row| row.trial.kept).count();
@@ -168,9 +214,9 @@ impl FosReport {
 
     fn table(&self) -> String {
         ReportTable::of(&self.trials)
-            .right("factor", |row| row.trial.factor)
+            .right(self.plan.sought.value(), |row| row.trial.factor)
             .right("verdict", |row| word(row.verdict))
-            .right(&self.column, |row| format!("{:.4e}", row.trial.displacement))
+            .right("displacement", |row| format!("{:.4e}", row.trial.displacement))
             .right("/ elastic", |row| format!("{:.3}", row.growth))
             .right("plastic strain", |row| some(row.trial.plastic_strain.map(|strain| format!("{strain:.2e}"))))
             .right("iterations", |row| row.trial.iterations)
@@ -184,9 +230,9 @@ impl FosReport {
     /// A row a trial.
     pub fn csv(&self) -> String {
         let made = ReportTable::of(&self.trials)
-            .column("factor", |row| row.trial.factor)
+            .column(self.plan.sought.value(), |row| row.trial.factor)
             .column("verdict", |row| word(row.verdict))
-            .column(&self.column, |row| row.trial.displacement)
+            .column(&self.column, |row| row.trial.largest_displacement)
             .column("growth", |row| row.growth)
             .column("plastic_strain", |row| some(row.trial.plastic_strain))
             .column("load", |row| row.trial.end.early().map_or(1.0, |(load, _)| load))
@@ -195,8 +241,9 @@ impl FosReport {
             .column("cuts", |row| row.trial.cuts)
             .column("cpu_seconds", |row| row.trial.cpu_seconds)
             .column("seconds", |row| row.trial.seconds)
+            .column("displacement", |row| row.trial.displacement)
             .csv(Quoted::Needed);
-        made.replacen('\n', "\n# -,-,as the case,-,-,-,-,-,-,s,s\n", 1)
+        made.replacen('\n', "\n# -,-,as the case,-,-,-,-,-,-,s,s,as the case\n", 1)
     }
 }
 
@@ -208,12 +255,42 @@ impl FosRow {
     }
 }
 
-/// What the reader of the factor should know.
-fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], plan: SearchPlan) -> Vec<String> {
+/// That a few points of a stable trial have moved much farther than the ground about them.
+fn loose_points(trial: &FosTrial) -> Option<String> {
+    let [x, y, _] = trial.farthest;
+    (trial.largest_displacement > DOUBLED * trial.displacement).then(|| {
+        format!(
+            "at {} a few material points have moved {:.1} times as far as the block of cells that decides, up to {:.2e} at \
+             ({x:.2}, {y:.2}): they creep at a free surface and do not count",
+            trial.factor,
+            trial.largest_displacement / trial.displacement,
+            trial.largest_displacement
+        )
+    })
+}
+
+/// That the mechanism reaches sides of the grid which hold it by tension.
+fn pulled_sides(mechanism: &Mechanism, sought: Sought) -> Option<String> {
+    let side = |side: &PulledSide| format!("{} ({:.0} % of the normal stress)", side.side, 100.0 * side.share);
+    let sides: Vec<String> = mechanism.pulled.iter().map(side).collect();
+    (!sides.is_empty()).then(|| {
+        format!(
+            "the mechanism reaches a side of the grid that is in tension there: {}. It may hold the ground back, so that the \
+             {} is too high. Move that side farther away, or let it release the ground by \"contact\" in [boundary]",
+            sides.join(", "),
+            sought.name()
+        )
+    })
+}
+
+/// What the reader of the factor should know of the search.
+fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Subject) -> Vec<String> {
     let mut notes = Vec::new();
     let coarse = curve.crossing(DOUBLED);
     if coarse.first_failed.is_none() {
-        notes.push(format!("no failure up to the factor {}: a greater --to may find it", plan.to));
+        let value = subject.sought.value();
+        let last = rows.last().map_or(0.0, |row| row.trial.factor);
+        notes.push(format!("no failure up to the {value} {last}: a greater --to may find it"));
     } else if kink.is_none() && curve.has_branch() {
         notes.push(
             "no trial beyond failure shows a branch that could be continued back to the kink; the band is that of the first \
@@ -237,6 +314,13 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], plan: Search
              iterations may carry it further",
             row.trial.factor, row.growth
         ));
+        if !subject.free_bodies.is_empty() {
+            notes.push(format!(
+                "the ground has hardly moved in that trial, and rigid bodies are free to move: {}. They may be what fails: \
+                 look at the trial, or replace them by a [[traction]]",
+                subject.free_bodies.join(", ")
+            ));
+        }
     }
     notes
 }

@@ -5,14 +5,10 @@
 use serde::Serialize;
 
 use super::curve::{Bracket, CurveState, DOUBLED, FactorCurve};
+use super::sought::{ELASTIC, Sought};
 use crate::Error;
 use crate::line::{BENT, FALLEN};
 
-/// The factor of the body that shows the elastic displacement: its materials follow their elastic laws, without
-/// strength that could limit the stress.
-pub(super) const ELASTIC: f64 = 0.0;
-/// The least factor that a case may have.
-pub(super) const LEAST: f64 = 0.1;
 /// The greatest one.
 pub(super) const GREATEST: f64 = 100.0;
 /// From one round of the ladder to the next. Trials before failure are cheap, those far beyond it cost many times as
@@ -34,6 +30,8 @@ pub(super) struct SearchPlan {
     /// Strength falls with strain: no branch after failure is looked for.
     #[serde(skip)]
     pub softens: bool,
+    #[serde(skip)]
+    pub sought: Sought,
 }
 
 /// Why a search goes no further.
@@ -78,8 +76,9 @@ pub(super) fn search(plan: SearchPlan, known: &mut Known<'_>) -> Result<FactorCu
     search.climb()?;
     if search.curve.crossing(DOUBLED).last_stable.is_none() {
         return Err(over(format!(
-            "no stable state was found down to the factor {}: try a smaller --from, or look at the trial of that factor for \
-             what fails: the body, or the solver ([solver] max_iterations, more load steps)",
+            "no stable state was found down to the {} {}: try a smaller --from, or look at that trial for what fails: the \
+             body, or the solver ([solver] max_iterations, more load steps)",
+            plan.sought.value(),
             plan.from
         )));
     }
@@ -209,7 +208,8 @@ pub(super) mod tests {
         (curve, asked)
     }
 
-    pub const PLAN: SearchPlan = SearchPlan { from: 0.5, to: 3.0, width: 0.02, softens: false };
+    pub const PLAN: SearchPlan =
+        SearchPlan { from: 0.5, to: 3.0, width: 0.02, softens: false, sought: Sought::FactorOfSafety };
 
     /// The displacement of a body that bends at a factor, always in equilibrium.
     pub fn hockey(kink: f64) -> impl Fn(f64) -> (f64, bool) {

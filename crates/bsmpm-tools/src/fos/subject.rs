@@ -3,17 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use bsmpm::water::flow::Motion;
-use bsmpm_scene::words::{Geometry, Word};
+use bsmpm_scene::words::{Geometry, Side, Support, Word};
 use bsmpm_scene::{Case, Counted, NamedMaterial, Quantity, Rigid, RigidShape, Traction};
 use serde::Serialize;
 
+use super::moved::{CountedPoints, HoldingSide};
 use super::refusal::{acting, followed, is_moved, ramps, refusals};
-use super::search::{ELASTIC, LEAST};
+use super::sought::{ELASTIC, Sought};
 use crate::Error;
 use crate::case::{self, parsed};
 
-/// The key that the search sets.
-const FACTOR: &str = "strength_reduction.factor";
 /// The key that lets a trial start without stress.
 const UNLOADED: &str = "strength_reduction.unloaded";
 /// The key that says at the end of which stage.
@@ -31,10 +30,8 @@ const UNCHANGED: f64 = 1.01;
 const SOFTENS: &str = "strength falls with plastic strain: peak and residual strength are divided alike, stiffness is the \
                        case's own, as how far the ground is strained matters; the first trial without equilibrium, or \
                        beyond five times the elastic displacement, has failed; it depends on the cells: compare two sizes";
-/// What a trial is judged by.
+/// The largest displacement of all points, as a case may record it.
 const QUANTITY: &str = "max-displacement";
-/// Its column where the case has another one of that name.
-const WHOLE: &str = "max-displacement-of-all";
 
 /// A case that can be searched.
 #[derive(Debug)]
@@ -50,8 +47,21 @@ pub(super) struct Subject {
     pub end: f64,
     /// of the trial of the elastic body
     elastic_end: f64,
-    /// the column of the largest displacement
+    /// what the case calls the largest displacement
     pub column: String,
+    /// by which the case multiplies it
+    pub scale: f64,
+    /// what the trials differ by
+    pub sought: Sought,
+    /// its least value that is tried
+    pub from: f64,
+    /// which points are judged
+    pub counted: CountedPoints,
+    /// sides of the grid that hold the ground in both directions
+    pub sides: Vec<HoldingSide>,
+    /// rigid bodies that move freely
+    pub free_bodies: Vec<String>,
+    case: Case,
     /// whether loads that the case lets act at once grow over the run
     is_grown: bool,
     /// whether the case begins with a stress, which trials do not
@@ -63,9 +73,20 @@ pub(super) struct Subject {
     /// whether strength follows plastic strain, so that the stiffness of the ground matters, and no branch after
     /// failure leads back to it
     pub softens: bool,
-    /// whether the case records it with a scale of its own, as E δ/(γ H²)
-    pub is_scaled: bool,
     pub conditions: Conditions,
+}
+
+/// What is asked of a case.
+pub(super) struct FosQuestion<'a> {
+    pub sought: Sought,
+    /// the least value that is tried
+    pub from: f64,
+    /// the stage at whose end the factor is wanted; without: of the body as it is drawn
+    pub stage: Option<&'a str>,
+    /// whether the water of that time stays where it is
+    pub undrained: bool,
+    /// the ends of the box in which material must lie to count: the lower ones, then the upper ones, m
+    pub region: &'a [f64],
 }
 
 /// What belongs to a factor of safety.
@@ -93,18 +114,14 @@ pub(super) struct Conditions {
 }
 
 impl Subject {
-    /// The case at `path` with overrides, to be searched from the factor `from` on: at the end of a `stage`, there
-    /// without drainage or with the pore pressures of that time, or as the body is drawn.
+    /// The case at `path` with overrides, of which something is asked.
     ///
     /// # Errors
     /// [`Error::Missing`] for a file that cannot be read, [`Error::BadCase`] with all errors of the case,
     /// [`Error::NoFactor`] with all reasons why it has no factor of safety, [`Error::Usage`] for overrides of the
     /// factor.
-    pub fn read(
-        path: &Path,
-        set: &[String],
-        (from, (stage, undrained)): (f64, (Option<&str>, bool)),
-    ) -> Result<Self, Error> {
+    pub fn read(path: &Path, set: &[String], question: &FosQuestion<'_>) -> Result<Self, Error> {
+        let FosQuestion { sought, from, stage, undrained, .. } = *question;
         if let Some(set) = set.iter().map(|set| set.trim_start()).find(|set| set.starts_with("strength_reduction")) {
             let key = set.split('=').next().unwrap_or(set).trim_end();
             let reason = format!("--set {key}: the search sets that; of a stage: --stage, and --undrained");
@@ -112,7 +129,13 @@ impl Subject {
         }
         let bytes = case::load(path)?;
         let mut set = set.to_vec();
-        let from_the_start = if stage.is_none() { reduction(from, 1.0) } else { Vec::new() };
+        // As it is, which tells what the trials set; then with the strength that the search begins with.
+        let as_it_is = parsed(path, &bytes, &set)?;
+        let from_the_start = if stage.is_none() { sought.overrides(&as_it_is, from, 1.0) } else { Vec::new() };
+        let refused = sought.refusal(&as_it_is).map(|reason| vec![reason]);
+        if let Some(reasons) = refused {
+            return Err(Error::NoFactor { path: path.to_owned(), reasons });
+        }
         let case = parsed(path, &bytes, &[&set[..], &from_the_start].concat())?;
         let until = |name: &str| until(&case, name).map(|until| (name.to_owned(), until));
         let stage = stage.map(until).transpose()?;
@@ -124,16 +147,12 @@ impl Subject {
         let whole = Quantity::MaxDisplacement { of: Counted::default() };
         let mut recorded: Vec<_> = case.histories.iter().filter(|history| history.quantity == whole).collect();
         recorded.sort_by_key(|history| history.scale == 1.0);
-        // Others may have its name: the largest displacement of a body.
-        let own = if case.histories.iter().any(|of| of.name == QUANTITY) { WHOLE } else { QUANTITY };
-        let column = recorded.first().map_or(own, |history| &history.name).to_owned();
-        let is_scaled = recorded.first().is_some_and(|history| history.scale != 1.0);
-        if recorded.is_empty() {
-            let number = case.histories.len();
-            set.extend(
-                [("quantity", QUANTITY), ("name", &column)].map(|(key, word)| format!("history.{number}.{key}={word}")),
-            );
-        }
+        let column = recorded.first().map_or(QUANTITY, |history| &history.name).to_owned();
+        let scale = recorded.first().map_or(1.0, |history| history.scale);
+        let counted = counted(&case, question.region)?;
+        let sides = holding_sides(&case, until);
+        let free_bodies =
+            case.rigid.iter().filter(|rigid| rigid.free.contains(&true)).map(|rigid| rigid.name.clone()).collect();
         let (title, mut conditions) = (case.title.clone(), Conditions::of(&case, until));
         let is_whole = stage.is_none();
         let is_grown = is_whole && ramps(&case).any(|ramp| ramp == 0.0);
@@ -146,7 +165,7 @@ impl Subject {
         if undrained {
             set.push(UNDRAINED.to_owned());
         }
-        let trial = |factor: f64| [&set[..], &reduction(factor, conditions.stiffness)].concat();
+        let trial = |value: f64| [&set[..], &sought.overrides(&as_it_is, value, conditions.stiffness)].concat();
         let parsed = |factor: f64, further: &[String]| parsed(path, &bytes, &[&trial(factor)[..], further].concat());
         let unloaded = if is_whole { Vec::new() } else { vec![format!("{UNLOADED}=true")] };
         let (first, elastic_end) = (parsed(from, &[])?, parsed(ELASTIC, &unloaded)?.analysis.end);
@@ -168,12 +187,18 @@ impl Subject {
             end,
             elastic_end,
             column,
+            scale,
+            sought,
+            from,
+            counted,
+            sides,
+            free_bodies,
+            case: as_it_is,
             is_grown,
             is_stressed,
             has_rigid,
             holds_water,
             softens,
-            is_scaled,
             conditions,
         })
     }
@@ -201,7 +226,19 @@ impl Subject {
     pub fn overrides(&self, factor: f64) -> Vec<String> {
         let unloaded = self.stage.is_some() && factor == ELASTIC;
         let unloaded = if unloaded { vec![format!("{UNLOADED}=true")] } else { Vec::new() };
-        [&self.set[..], &reduction(factor, self.conditions.stiffness), &unloaded].concat()
+        [&self.set[..], &self.sought.overrides(&self.case, factor, self.conditions.stiffness), &unloaded].concat()
+    }
+
+    /// The overrides, and the case's text, of the elastic body under the inertia that the search begins with; none where
+    /// strength is divided, as its trials have one elastic body.
+    pub fn pushed_elastic(&self) -> Result<Option<(Vec<String>, String)>, Error> {
+        if !self.sought.is_seismic() {
+            return Ok(None);
+        }
+        let set =
+            [&self.set[..], &self.sought.pushed_elastic(&self.case, self.from, self.conditions.stiffness)].concat();
+        let text = parsed(&self.path, &self.bytes, &set)?.text;
+        Ok(Some((set, text)))
     }
 
     /// What was done to the case that its reader should know.
@@ -261,16 +298,38 @@ impl Subject {
     }
 }
 
-/// The overrides of a factor, and of a stiffness.
-fn reduction(factor: f64, stiffness: f64) -> Vec<String> {
-    let mut set = vec![format!("{FACTOR}={:?}", factor.max(LEAST))];
-    if factor == ELASTIC {
-        set.push("strength_reduction.elastic=true".to_owned());
+/// Which points of a case are judged, in a region of `[lower..., upper...]` or everywhere.
+fn counted(case: &Case, region: &[f64]) -> Result<CountedPoints, Error> {
+    let dims = case.grid.dims();
+    let points_per_cell = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
+    let whole = CountedPoints { dims, points_per_cell, region: None };
+    if region.is_empty() {
+        return Ok(whole);
     }
-    if stiffness != 1.0 {
-        set.push(format!("strength_reduction.stiffness={stiffness:?}"));
+    let (lower, upper) = region.split_at(region.len() / 2);
+    if region.len() != 2 * dims || lower.iter().zip(upper).any(|(low, high)| low >= high) {
+        let reason = format!("--region: give {dims} lower and then {dims} larger upper coordinates, between commas");
+        return Err(Error::Usage { reason });
     }
-    set
+    let corner = |numbers: &[f64]| std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0));
+    Ok(CountedPoints { region: Some([corner(lower), corner(upper)]), ..whole })
+}
+
+/// The sides of the grid that hold the ground in both directions once the stages until the time `until` have begun.
+fn holding_sides(case: &Case, until: Option<f64>) -> Vec<HoldingSide> {
+    let names = Side::of(case.geometry);
+    let is_axis = |axis: usize, upper: bool| case.geometry == Geometry::Axisymmetric && axis == 0 && !upper;
+    let faces = case.faces_at(acting(case, until)).into_iter();
+    let holding = faces.filter(|of| matches!(of.support, Support::Fixed | Support::Roller));
+    let holding = holding.filter(|of| !is_axis(of.face.axis, of.face.upper));
+    let side = |axis: usize, upper: bool| {
+        let line = &case.grid.axes[axis];
+        let cells = line.cells();
+        let [from, to] = if upper { [cells - 1, cells] } else { [0, 1] };
+        let cells = [line.breakpoint(from), line.breakpoint(to)];
+        HoldingSide { name: names[axis][usize::from(upper)].word(), axis, cells }
+    };
+    holding.map(|of| side(of.face.axis, of.face.upper)).collect()
 }
 
 /// What Young's moduli must be multiplied with so that the load strains no body by more than [`SMALL`], to three

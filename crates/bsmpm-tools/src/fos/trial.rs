@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use super::curve::CurveState;
 use super::jobs::JobSource;
-use super::search::ELASTIC;
+use super::moved::{Mechanism, MovedGround};
+use super::sought::ELASTIC;
 use super::subject::Subject;
 use crate::Error;
 use crate::launch::{self, LaunchTask, Outcome, RunCost, RunState, SolverProgram, Stop};
@@ -32,9 +33,20 @@ pub(super) struct FosTrial {
     pub factor: f64,
     #[serde(flatten)]
     pub end: End,
-    /// the largest one, in the unit of the case's history, as of its own stiffness; at the end of the load that was
-    /// reached; of a stage the one since, and the elastic one
+    /// the one that decides: what the material of a block of cells has moved at least, in the unit of the case's
+    /// history, as of its own stiffness; at the end of the load that was reached; of a stage the one since, and the
+    /// elastic one
     pub displacement: f64,
+    /// the same, less what the inertia of this trial adds to the displacement of the elastic body
+    #[serde(skip)]
+    pub comparable: f64,
+    /// the largest one of any point
+    pub largest_displacement: f64,
+    /// m  where the point is that has moved most
+    pub farthest: [f64; 3],
+    /// where the ground moves by more than half of the displacement that decides
+    #[serde(skip)]
+    pub mechanism: Mechanism,
     /// the largest accumulated one of any point; none where no frame holds it
     pub plastic_strain: Option<f64>,
     pub steps: u64,
@@ -57,6 +69,8 @@ pub(super) struct Trials<'a> {
     pub force: bool,
     /// what they go on from; none: from zero
     pub stage: Option<StageState>,
+    /// what they are compared with where inertia is sought
+    pub pushed: Option<PushedBody>,
 }
 
 /// The state at the end of a stage.
@@ -67,10 +81,18 @@ pub(super) struct StageState {
     elastic: f64,
 }
 
+/// The elastic body under its weight, and under some inertia in addition: displacements under any other inertia follow
+/// by superposition.
+pub(super) struct PushedBody {
+    still: MovedGround,
+    pushed: MovedGround,
+    coefficient: f64, // of `pushed`
+}
+
 impl FosTrial {
     /// What the judge sees of it.
     pub fn state(&self) -> CurveState {
-        CurveState { factor: self.factor, displacement: self.displacement, whole: self.end == End::Equilibrium }
+        CurveState { factor: self.factor, displacement: self.comparable, whole: self.end == End::Equilibrium }
     }
 
     pub fn cost(&self) -> RunCost {
@@ -145,11 +167,46 @@ impl Trials<'_> {
         let Some(checkpoint) = from else { return Err(outcome.error(what)) };
         let kept = if outcome.kept { ", kept" } else { "" };
         told(&format!("{what}: {} iterations, {:.1} s{kept}", outcome.cost.iterations, outcome.cost.wall_seconds));
-        let elastic = match self.kept(ELASTIC)? {
-            Some(trial) => trial,
-            None => self.make(ELASTIC, &Stop::default())?,
-        };
+        let elastic = self.elastic_trial()?;
         Ok(Some(StageState { checkpoint, cost: outcome.cost, elastic: elastic.displacement }))
+    }
+
+    fn elastic_trial(&self) -> Result<FosTrial, Error> {
+        match self.kept(ELASTIC)? {
+            Some(trial) => Ok(trial),
+            None => self.make(ELASTIC, &Stop::default()),
+        }
+    }
+
+    /// The elastic body with and without inertia, if that is sought: found now, unless it is there.
+    ///
+    /// # Errors
+    /// [`Error::NoStableState`] if it has no equilibrium.
+    pub fn pushed(&self) -> Result<Option<PushedBody>, Error> {
+        let Some((set, text)) = self.subject.pushed_elastic()? else { return Ok(None) };
+        let still = self.output.join(self.elastic_trial()?.directory);
+        let directory = self.output.join("trials").join("pushed.out");
+        let origin = self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}"));
+        let task = LaunchTask { directory: directory.clone(), origin, ..self.task(ELASTIC, &set, &text) };
+        let outcome = self.solver.outcome(&task, |manifest| manifest.case.text == text)?;
+        if outcome.state != RunState::Done {
+            return Err(outcome.error("the elastic body under the least inertia".to_owned()));
+        }
+        let [still, pushed] = [self.ground(&still, ELASTIC)?, self.ground(&directory, ELASTIC)?];
+        Ok(Some(PushedBody { still, pushed, coefficient: self.subject.from }))
+    }
+
+    /// How far the ground of a trial has moved at the end.
+    fn ground(&self, directory: &Path, value: f64) -> Result<MovedGround, Error> {
+        let [_, end] = self.subject.times(value);
+        let frames = RunRecord::read(directory)?.frames(&[end])?;
+        let ground = frames.last().and_then(|frame| MovedGround::of(frame, &self.subject.counted));
+        ground.ok_or_else(|| Error::Usage {
+            reason: format!(
+                "no material point that counts is in the last frame of {}: give a --region that has material in it",
+                directory.display()
+            ),
+        })
     }
 
     /// What a trial goes on from.
@@ -190,17 +247,27 @@ impl Trials<'_> {
             (RunState::Left, Some(load)) => End::Left { load, reason },
             _ => return Err(broken(reason)),
         };
-        let column = outcome.history.as_ref().and_then(|history| history.get(&self.subject.column)?.last().copied());
-        let displacement = column.ok_or_else(|| broken("it left no displacement".to_owned()))?;
+        let loose = outcome.manifest.as_ref().and_then(|manifest| manifest.failure.as_ref()?.loose.clone());
+        if let Some(name) = loose {
+            return Err(Error::LooseBody { value: self.subject.sought.value(), trial: factor, name });
+        }
+        let ground = self.ground(directory, factor)?;
         let frames = RunRecord::read(directory)?.frames(&[whole])?;
         let strains = frames.last().and_then(|frame| FieldName::PlasticStrain.values(frame));
         let RunCost { cpu_seconds, wall_seconds, steps, iterations, cuts, .. } = outcome.cost;
         let before = self.beginning(factor).map_or(RunCost::default(), |state| state.cost);
         let elastic = self.beginning(factor).map_or(0.0, |state| state.elastic);
+        let unit = self.subject.scale * self.subject.conditions.stiffness;
+        let displacement = elastic + ground.displacement() * unit;
+        let (largest, farthest) = ground.farthest();
         Ok(FosTrial {
             factor,
             end,
-            displacement: elastic + displacement * self.subject.conditions.stiffness,
+            displacement,
+            comparable: displacement * self.pushed.as_ref().map_or(1.0, |body| body.share(factor)),
+            largest_displacement: elastic + largest * unit,
+            farthest,
+            mechanism: ground.mechanism(self.subject.counted.dims, &self.subject.sides),
             plastic_strain: strains.and_then(|strains| strains.into_iter().reduce(f64::max)),
             steps: steps - before.steps,
             iterations: iterations - before.iterations,
@@ -210,6 +277,14 @@ impl Trials<'_> {
             kept: outcome.kept,
             directory: within(factor),
         })
+    }
+}
+
+impl PushedBody {
+    /// What part of its displacement under the inertia of a coefficient the body has without inertia.
+    fn share(&self, coefficient: f64) -> f64 {
+        let pushed = self.still.superposed(&self.pushed, coefficient / self.coefficient);
+        self.still.displacement() / pushed.displacement()
     }
 }
 

@@ -60,7 +60,8 @@ fn picture(
     let layout = Layout::of(region, if lying { RIGHT } else { bar::BESIDE }, 0.0);
     let axes = layout.axes(ABOVE);
     let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 });
-    let reduction = record.case.strength_reduction.map(|factor| format!(", strength divided by {factor}"));
+    let divided = record.case.strength_reduction.filter(|factor| *factor != 1.0);
+    let reduction = divided.map(|factor| format!(", strength divided by {factor}"));
     let below = record.moment(frame.time) + &reduction.unwrap_or_default() + &section::named(section) + beyond;
     title(&mut canvas, layout.width, &record.manifest.case.title, &below);
     let shades: Vec<_> = values.iter().map(|&value| colour::map(bar.share(value))).collect();

@@ -20,17 +20,15 @@ const RANGE: [f64; 2] = [0.5, 3.0];
 pub(super) fn outcome(batch: &Batch, order: &RunOrder) -> Outcome {
     let directory = batch.output.join("runs").join(format!("{}.fos", order.name));
     let arguments = fos::FosArguments {
-        case: batch.path.to_owned(),
-        from: RANGE[0],
-        to: RANGE[1],
-        stage: None,
-        undrained: false,
-        width: WIDTH,
+        from: Some(RANGE[0]),
+        to: Some(RANGE[1]),
+        width: Some(WIDTH),
         jobs: Some(1),
         set: order.set.clone(),
         output: Some(directory.clone()),
         force: batch.force,
         command: batch.solver.command.to_vec(),
+        ..fos::FosArguments::of(batch.path.to_owned())
     };
     match fos::factor(&arguments) {
         Ok(found) => of(found, directory),

@@ -27,7 +27,7 @@ const SLOPE: &str = include_str!("../../../../cases/short/slope_stability.toml")
 const SCALED: &str = "E_delta_over_gamma_H2";
 
 /// What the body of a stub does, as `KEY=NUMBER ...`: it bends at the factor `kink`, ends early from `stops` to `until`
-/// with `code`, and has no end above `lasts`.
+/// with `code`, from `loose` on because a rigid body slips, and has no end above `lasts`.
 fn behaviour(folder: &Path, key: &str, otherwise: f64) -> f64 {
     let text = fs::read_to_string(folder.join("behaviour")).unwrap();
     let value = text.split_whitespace().find_map(|word| word.strip_prefix(key)?.strip_prefix('='));
@@ -64,12 +64,20 @@ fn stub() {
         false => 0,
     };
     let output = after("--output").remove(0);
-    write_run(&case, arguments.clone(), Path::new(&output), 7.5e-3 * growth, code);
+    let slips = factor >= behaviour(&folder, "loose", f64::INFINITY);
+    let (code, loose) = if slips { (80, Some("block".to_owned())) } else { (code, None) };
+    write_run(&case, arguments.clone(), Path::new(&output), 7.5e-3 * growth, (code, loose));
     std::process::exit(i32::from(code));
 }
 
-/// A run of one step whose largest displacement is that many metres.
-fn write_run(case: &bsmpm_scene::Case, argv: Vec<String>, directory: &Path, displacement: f64, code: u8) {
+/// A run of one step whose largest displacement is that many metres, how it ended, and the rigid body that slipped.
+fn write_run(
+    case: &bsmpm_scene::Case,
+    argv: Vec<String>,
+    directory: &Path,
+    displacement: f64,
+    (code, loose): (u8, Option<String>),
+) {
     let told = ManifestCase::new("slope.toml", &case.title, "plane-strain", case.text.clone());
     let mut manifest = Manifest::begin("0.1.0", argv, told);
     manifest.grid = Some(GridExtent { lower: vec![0.0; 2], upper: vec![40.0, 12.0], cell: vec![1.0; 2] });
@@ -105,7 +113,8 @@ fn write_run(case: &bsmpm_scene::Case, argv: Vec<String>, directory: &Path, disp
         manifest.finish(Status::Finished, 0);
     } else {
         let reason = "no step converged".to_owned();
-        manifest.failure = Some(ManifestFailure { step: 2, time: 0.875, reason, residuals: Vec::new(), worst: None });
+        manifest.failure =
+            Some(ManifestFailure { step: 2, time: 0.875, reason, residuals: Vec::new(), worst: None, loose });
         manifest.finish(Status::Failed, code);
     }
     manifest.write(directory.path()).unwrap();
@@ -409,4 +418,39 @@ fn a_wrong_command_line_is_refused_with_2() {
     assert_eq!(without(&["fos", "slope.toml", "--jobs", "0"]), Some(2));
     assert_eq!(without(&["fos", "slope.toml", "--", "./nowhere/bsmpm-par"]), Some(74));
     assert_eq!(bench.calls(), 0);
+}
+
+/// Only what lies in the box counts: the lower part of the stub's ground moves less, and fails at the same factor.
+#[test]
+fn a_region_is_judged_alone() {
+    let bench = Bench::new(SLOPE, "kink=1.373");
+    let of = |options: &[&str]| {
+        let output = bench.fos(options);
+        assert!(output.status.success(), "{output:?}");
+        bench.found()
+    };
+    let (whole, lower) = (of(&[]), of(&["--region", "0,0,10,5"]));
+    let displacement = |found: &Value| found["elastic_displacement"].as_f64().unwrap();
+    assert!(displacement(&lower) < 0.8 * displacement(&whole), "{lower}");
+    assert!((displacement(&lower) - displacement(&whole)).abs() > 0.0 && whole["region"].is_null());
+    assert_eq!(lower["factor_of_safety"]["last_stable"], whole["factor_of_safety"]["last_stable"]);
+    assert!(lower["mechanism"]["upper"][1].as_f64().unwrap() <= 5.0, "{lower}");
+    for region in ["0,0,10", "0,0,10,0", "5,0,4,1"] {
+        let output = bench.fos(&["--region", region]);
+        assert!(
+            output.status.code() == Some(2) && text(&output.stderr).contains("--region: give 2 lower"),
+            "{output:?}"
+        );
+    }
+    let output = bench.fos(&["--region", "20,0,30,5"]);
+    assert!(text(&output.stderr).contains("give a --region that has material in it"), "{output:?}");
+}
+
+#[test]
+fn a_rigid_body_that_slips_is_no_failure_of_the_ground() {
+    let bench = Bench::new(SLOPE, "kink=1.373 loose=1.1");
+    let output = bench.fos(&[]);
+    let said = text(&output.stderr);
+    assert!(output.status.code() == Some(80) && said.contains("rigid body \"block\" slips in the trial of"), "{said}");
+    assert!(!bench.path("slope.fos/fos.json").exists());
 }

@@ -24,6 +24,7 @@ mod memory;
 mod moved_interfaces;
 mod open_faces;
 mod outputs;
+mod pseudo_static;
 mod ranks;
 mod references;
 mod restart;

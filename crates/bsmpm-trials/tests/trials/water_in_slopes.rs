@@ -129,17 +129,13 @@ fn a_slope_under_a_level_has_the_factor_of_each_level() {
 
 fn search(level: &str, output: &Path) -> Value {
     let arguments = FosArguments {
-        case: shipped("drawdown_levels.toml"),
-        from: 1.0,
-        to: 2.0,
-        stage: None,
-        undrained: false,
-        width: 0.02,
+        from: Some(1.0),
+        to: Some(2.0),
         jobs: Some(2),
         set: vec![format!("water.level={level}")],
         output: Some(output.to_owned()),
-        force: false,
         command: vec![program().to_owned()],
+        ..FosArguments::of(shipped("drawdown_levels.toml"))
     };
     let _turn = processes::turn();
     run(&arguments, |_| ()).unwrap();
