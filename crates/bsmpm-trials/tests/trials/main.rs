@@ -2,6 +2,7 @@
 //! the same crates again.
 
 mod axisymmetric;
+mod background;
 mod checkpoints;
 mod command_line;
 mod consolidation;
