@@ -87,3 +87,17 @@ fn works_that_cancel_do_not_make_the_background_seem_large() {
     println!("last step: {}", last.work);
     assert!(last.work > 0.0 && last.work < 0.02, "{last:?}");
 }
+
+/// What stops such a footing is no matter of steps, background or cohesion (80 with each); with the purpose it finds its
+/// limit load.
+#[test]
+fn a_footing_on_sand_that_finds_no_equilibrium_names_the_cohesion() {
+    let scratch = Scratch::with_case(SAND);
+    let steep = ["case.toml", "--set", "material.sand.friction=40", "--set", "material.sand.dilation=10"];
+    let rough = ["--set", "footing.base=rough"];
+    let failed = scratch.direct(&[&steep[..], &rough].concat()).expect(80);
+    failed.says_once("; try: analysis.purpose = \"limit-load\"");
+    failed.says_once("material.sand has no cohesion");
+    let purpose = ["--force", "-q", "--set", "analysis.purpose=limit-load"];
+    scratch.direct(&[&steep[..], &rough, &purpose].concat()).expect(0);
+}
