@@ -20,7 +20,7 @@ use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::water::observed::PoreWater;
 use bsmpm_io::manifest::{Indicator, Summary};
-use bsmpm_scene::{Body, Case, GridAxis};
+use bsmpm_scene::{Body, Case, GridAxis, NarrowestOpening};
 use std::collections::BTreeMap;
 
 /// Usual root mean square, and usual largest one, of the quadrature defect.
@@ -45,6 +45,9 @@ const WATER: f64 = 1e-4;
 const SMOOTHED: [f64; 2] = [0.1, 1.5];
 /// Usual slip of a strip in a step over its motion.
 const SLIP: f64 = 0.01;
+/// No number of cells across an opening is too many.
+const MANY_CELLS: f64 = 1e6;
+
 /// Part of the largest reaction with which the face of a grid usually pulls.
 const PULL: f64 = 0.05;
 /// Largest cells by which a front usually goes back.
@@ -144,6 +147,7 @@ impl IndicatorState {
         let smoothed = summary.smoothing_passes.map(|passes| ("smoothing-length", smoothing(case, passes)));
         all.extend(slip.into_iter().chain(smoothed).chain(course(case, summary)));
         all.extend(shifts(self.interfaces, case));
+        all.extend(case.opening.as_ref().map(|narrowest| ("cells-across-opening", across(narrowest))));
         // JSON has no other numbers.
         all.retain(|(_, indicator)| indicator.value.is_finite());
         let advising =
@@ -269,6 +273,14 @@ fn shifts(found: InterfaceShift, case: &Case) -> impl Iterator<Item = (&'static 
         ("permeability-shift", Indicator::new(moved, "-", meaning, [0.0, SHIFT_WATER]))
     });
     stress.into_iter().chain(water)
+}
+
+/// Cells across the hole or notch that has the fewest.
+fn across(narrowest: &NarrowestOpening) -> Indicator {
+    let NarrowestOpening { path, cells, least, .. } = narrowest;
+    let width = narrowest.brief_width();
+    let meaning = format!("cells across the hole or notch with the fewest at the start, {path} of {width} m");
+    Indicator::new(*cells, "-", &meaning, [*least, MANY_CELLS])
 }
 
 /// How far so many passes of smoothing have reached.

@@ -88,8 +88,8 @@ fn works_that_cancel_do_not_make_the_background_seem_large() {
     assert!(last.work > 0.0 && last.work < 0.02, "{last:?}");
 }
 
-/// What stops such a footing is no matter of steps, background or cohesion (80 with each); with the purpose it finds its
-/// limit load.
+/// What stops such a footing is no matter of steps, background or cohesion (80 with each); with the purpose it finds
+/// its limit load.
 #[test]
 fn a_footing_on_sand_that_finds_no_equilibrium_names_the_cohesion() {
     let scratch = Scratch::with_case(SAND);

@@ -44,6 +44,7 @@ mod solid_told;
 mod solid_water;
 mod stages;
 mod still_water;
+mod stress_concentrations;
 mod strips;
 mod sweep;
 mod told;
