@@ -192,7 +192,7 @@ impl Ledger {
             self.manifest.balance.get_or_insert_default().enter(cost.imbalance, cost.is_cut_anew);
         }
         self.manifest.summary.newton_steps += u64::from(report.newton_iterations > 0);
-        self.measures(report);
+        self.measures(number, report);
         self.stiffness(number, accepted);
         self.reactions(report);
         let slips = report.strips.iter().filter(|strip| strip.motion > 0.0).map(surfaces::relative_slip);
@@ -243,7 +243,7 @@ impl Ledger {
 
     /// What a step tells of how far its state can be trusted. A state without a direction from it was accepted as
     /// balanced to round-off, or far below the tolerance; one that settled, by its forces alone.
-    fn measures(&mut self, report: &StepReport) {
+    fn measures(&mut self, number: u64, report: &StepReport) {
         let criteria = self.criteria;
         let summary = &mut self.manifest.summary;
         if let Some(passes) = &mut summary.smoothing_passes {
@@ -252,16 +252,18 @@ impl Ledger {
         summary.largest_advance =
             Some(summary.largest_advance.map_or(report.advance, |so_far| so_far.max(report.advance)));
         summary.settled_steps += u64::from(report.settled);
-        if let Some([soft, all]) = report.background {
-            summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft * self.whole);
-            summary.internal_work = Some(summary.internal_work.unwrap_or(0.0) + all.abs() * self.whole);
+        summary.last_background = None;
+        if let Some([soft, all]) = report.background.map(|works| works.map(|work| work * self.whole)) {
+            let internal = summary.internal_work.unwrap_or(0.0) + all;
+            summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft);
+            summary.internal_work = Some(internal);
+            // The forces of a single step may nearly vanish.
+            let scale = all.max(internal / number as f64);
+            let work = if soft == 0.0 { 0.0 } else { soft / scale };
+            summary.last_background = Some(BackgroundShares { work });
         }
-        summary.last_background = report.background.map(|[soft, all]| BackgroundShares {
-            work: if all == 0.0 { 0.0 } else { soft / all.abs() },
-            load: report.background_share,
-        });
         if let Some(share) = report.background_share {
-            summary.background_load_shares = Some(summary.background_load_shares.unwrap_or(0.0) + share);
+            summary.background_forces = Some(summary.background_forces.unwrap_or(0.0) + share);
         }
         if let Some((excess, turnover)) = report.beside_fixed.zip(report.turnover.as_ref()) {
             summary.beside_fixed = Some(summary.beside_fixed.unwrap_or(0.0) + excess * self.whole);

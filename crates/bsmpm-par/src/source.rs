@@ -71,6 +71,10 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         format!("ranks            at most {}, of use about {}", case.most_ranks(), estimate.useful_ranks),
         format!("nominal steps    {}", bsmpm_scene::model::nominal_steps(case)),
     ];
+    if let Some(narrowest) = &case.opening {
+        let (cells, path, width) = (narrowest.cells, &narrowest.path, narrowest.brief_width());
+        lines.push(format!("hole or notch    {cells:.1} cells across {path} of {width} m, the fewest of all"));
+    }
     let told = case.notes.iter().map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));
     let chosen = setup::choices(case, ranks, options);
     lines.extend(

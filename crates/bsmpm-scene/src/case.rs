@@ -92,6 +92,8 @@ pub struct Case {
     pub histories: Vec<History>,
     /// The limit load that it seeks, if it seeks one.
     pub limit_load: Option<LimitLoad>,
+    /// The hole or notch of the bodies that has the fewest cells across, if there is any.
+    pub opening: Option<NarrowestOpening>,
     /// Fields along lines, in the order of the file.
     pub profiles: Vec<Profile>,
     /// Bounds that are verified at the end.
@@ -318,6 +320,33 @@ pub struct Output {
     pub fields: Vec<FrameField>,
     /// When restart files are written.
     pub checkpoint: Checkpoint,
+}
+
+/// The hole or notch of the bodies that has the fewest cells across.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NarrowestOpening {
+    /// Keys of the shape.
+    pub path: String,
+    /// m  its least width
+    pub width: f64,
+    /// Cells across it, as large as those next to its walls.
+    pub cells: f64,
+    /// Cells across from which on the stress at the edge of a hole is within about 10 %, wherever its edge lies in a
+    /// cell.
+    pub least: f64,
+}
+
+impl NarrowestOpening {
+    /// Its width to three digits, m.
+    pub fn brief_width(&self) -> f64 {
+        format!("{:.2e}", self.width).parse().unwrap_or(self.width)
+    }
+
+    /// Cells across that are enough, by the points along an axis of a cell: the RMS error is 6.5 % with 6 cells and 3
+    /// points, 8.3 % with 8 cells and 2 points (`crates/bsmpm-scene/src/preset.md`).
+    pub(crate) fn enough(points_per_cell: usize) -> f64 {
+        if points_per_cell >= 3 { 6.0 } else { 8.0 }
+    }
 }
 
 /// When restart files are written, besides where a run stops early.

@@ -26,6 +26,7 @@ mod error;
 mod estimate;
 mod grid;
 mod nearest;
+mod openings;
 mod overrides;
 mod preset;
 mod read;
@@ -44,9 +45,9 @@ pub use bsmpm::quadrature::Quadrature;
 pub use case::{
     Acting, Analysis, Base, Body, Case, Check, Checkpoint, Column, Counted, Drain, DrainSite, ElementStage,
     ElementTest, Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, Inflow, Initial,
-    LimitLoad, Linear, LoadWidth, LoadedLine, Made, MotionPath, NamedMaterial, Nonlinear, Output, Plate, PointLoad,
-    Prescribed, Profile, Push, Quantity, Rigid, RigidShape, Shares, Site, Solver, SoughtLoad, Stage, Support, Traction,
-    Triangle, Water,
+    LimitLoad, Linear, LoadWidth, LoadedLine, Made, MotionPath, NamedMaterial, NarrowestOpening, Nonlinear, Output,
+    Plate, PointLoad, Prescribed, Profile, Push, Quantity, Rigid, RigidShape, Shares, Site, Solver, SoughtLoad, Stage,
+    Support, Traction, Triangle, Water,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

@@ -6,6 +6,7 @@
 
 mod axis;
 mod cells;
+mod concentration;
 mod limit_load;
 mod rigid;
 mod scene;
@@ -32,6 +33,10 @@ struct Preset {
     along: f64,
     /// Parts of that width as far as which cells around it are as small.
     reach: f64,
+    /// Cells across a hole or a notch, where these are smaller.
+    opening: f64,
+    /// Edge of a cell over that of the cells at a steep re-entrant corner.
+    corner: f64,
     /// Edge of a cell over that of the next smaller one, farther away.
     growth: f64,
     /// Points along each axis of a cell.
@@ -53,6 +58,8 @@ impl Preset {
                 across: 10.0,
                 along: 8.0,
                 reach: 0.125,
+                opening: 8.0,
+                corner: 2.0,
                 growth: 1.5,
                 points: 2,
                 crossed: 4.0,
@@ -64,6 +71,8 @@ impl Preset {
                 across: 20.0,
                 along: 16.0,
                 reach: 0.25,
+                opening: 12.0,
+                corner: 4.0,
                 growth: 1.2,
                 points: 3,
                 crossed: 4.0,
@@ -75,6 +84,8 @@ impl Preset {
                 across: 40.0,
                 along: 24.0,
                 reach: 0.5,
+                opening: 24.0,
+                corner: 4.0,
                 growth: 1.1,
                 points: 4,
                 crossed: 2.0,

@@ -19,7 +19,7 @@ pub(crate) use extent::AxisExtent;
 pub(crate) use raster::Raster;
 pub(crate) use simple::{PolygonFault, area, bounds, fault};
 pub(crate) use skin::skin;
-pub(crate) use solid::{Section, SolidShape};
+pub(crate) use solid::{Section, SolidShape, plane};
 pub(crate) use surface::{Surface, edges_of};
 pub(crate) use sweep::{Window, solid, sweep};
 

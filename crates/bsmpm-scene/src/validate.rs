@@ -15,6 +15,7 @@ mod lines;
 mod load;
 mod material;
 mod meeting;
+mod opening;
 mod output;
 mod physics;
 mod place;
@@ -150,6 +151,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
         histories,
         profiles,
         limit_load: None,
+        opening: None,
         checks,
         elements,
         warnings: Vec::new(),
@@ -178,6 +180,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     solver::fit_weights(&mut case, record, report);
     limit_load::complete(&mut case, record, limit_load::Preparation { stiffness, inside_cells }, report);
     meeting::check(&case, record, report);
+    opening::check(&mut case, record, report);
     material::band::check(&case, record, report);
     physics::check(&case, record, report);
     lasting::check(&case, record, report);

@@ -126,6 +126,15 @@ impl<const D: usize> Boundary<D> {
         self.loads.iter().any(|load| load.turns(step)) || self.strips.iter().any(|strip| strip.acts() && moves(strip))
     }
 
+    /// Whether something moves as prescribed in the step from `t` to `t + dt`: a face, a strip or a rigid body.
+    pub fn moves(&self, t: f64, dt: f64) -> bool {
+        let is_driven = |support: &Support<D>| support.velocity.iter().flatten().any(|&velocity| velocity != 0.0);
+        let strip_moves = |strip: &Strip<D>| strip.acts() && strip.path.at(t) != strip.path.at(t + dt);
+        let prescribed = |body: &RigidBody<D>, t: f64| body.pick(&Vector::zeros(), &body.on_path(t));
+        let body_moves = |body: &RigidBody<D>| body.acts && prescribed(body, t) != prescribed(body, t + dt);
+        self.supports.iter().any(is_driven) || self.strips.iter().any(strip_moves) || self.rigid.iter().any(body_moves)
+    }
+
     /// Whether something moves as prescribed in the step from `t` to `t + dt`, and everything that does has the
     /// velocity that it had in the step of length `last_dt` before.
     pub fn moves_steadily(&self, t: f64, last_dt: f64, dt: f64) -> bool {

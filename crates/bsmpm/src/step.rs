@@ -77,6 +77,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let carried = nodes.rigid.carried(&found.u, points.len(), halo);
     let held = nodes.rigid.held(&found.u, halo);
     let mut report = StepReport { dt, strips, rigid, ..StepReport::of(&problem, &found) };
+    if !model.boundary.moves(t, dt) {
+        report.background_share = report::background_share(&problem, &found);
+    }
     let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo);
     let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
     let pressure = nodes.followers.tractions::<K>(

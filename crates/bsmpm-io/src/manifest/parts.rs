@@ -180,15 +180,15 @@ pub struct Summary {
     /// J  work done on the soft background in all steps; none without one.
     #[serde(default)]
     pub background_work: Option<f64>,
-    /// J  magnitudes of the work of all internal forces, the background's among them, added over the steps; none
-    /// without a background.
+    /// J  magnitudes of the works of the internal forces at all nodes, the background's among them, added over the
+    /// steps; none without a background.
     #[serde(default)]
     pub internal_work: Option<f64>,
-    /// Largest force of the soft background on a node over the load on it, added over the steps; none without one of
-    /// the two.
+    /// Largest force of the soft background on a node over the RMS force of the nodes, added over the steps without
+    /// prescribed motion; none without a background or such steps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub background_load_shares: Option<f64>,
-    /// Parts of the work and of the load that the soft background took in the last step; none without one.
+    pub background_forces: Option<f64>,
+    /// Part of the work that the soft background took in the last step; none without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_background: Option<BackgroundShares>,
     /// m  the farthest that a point moved in a step, added over the steps; none where stiffness is not judged.
@@ -223,10 +223,9 @@ pub struct Summary {
 /// What the soft background takes in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BackgroundShares {
-    /// Work done on it over that of all internal forces.
+    /// Work done on it over the magnitudes of the works of all internal forces, or over their mean of the steps so far
+    /// where that is larger.
     pub work: f64,
-    /// Largest force of it on a node over the load on that node; none where no node has a load.
-    pub load: Option<f64>,
 }
 
 /// What the ranks told each other in one way, over the run.

@@ -160,8 +160,12 @@ fn constant(name: &str, case: &Case) -> &'static str {
              it is a cell; a smaller [analysis] dt"
         }
         "background-load-share" => {
-            "material at that node may move without stiffness of its own. Use the default of solver.extension, increase \
-             points_per_cell, or, where a motion is prescribed, increase analysis.steps"
+            "material at that node has no stiffness of its own and creeps from step to step. Use the default of \
+             solver.extension, increase points_per_cell, or reduce analysis.steps"
+        }
+        "cells-across-opening" => {
+            "stress at the edge of the hole or notch is off by more than 10 %. Use smaller cells there (grid.knots), or accuracy = \
+             \"standard\""
         }
         "stiffness-loss" => {
             "displacements from then on depend on the number of steps and on solver.background, not on equilibrium. Reduce \

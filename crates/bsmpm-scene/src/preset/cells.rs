@@ -1,8 +1,9 @@
-//! Cells that a preset chooses: equal ones, or small ones around strips, loaded segments and rigid bodies that grow
-//! away from them.
+//! Cells that a preset chooses: equal ones, or small ones around strips, loaded segments, rigid bodies, holes and
+//! re-entrant corners that grow away from them.
 
 use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};
+use super::concentration::PresetOpening;
 use super::scene::{GradedSegment, PresetScene, around};
 use crate::validate::SQUARE;
 use crate::words::{Side, Support, Word};
@@ -53,11 +54,16 @@ impl Cells {
     }
 }
 
+/// Cells at a re-entrant corner that are as small, to either side of it.
+const AT_CORNER: f64 = 4.0;
+
 /// A rectangle in which cells are small.
 struct Zone {
     /// m  per axis
     ranges: [Fine; 2],
     why: String,
+    /// Whether something moves or loads the body there, so that steps follow its cells.
+    acts: bool,
 }
 
 impl PresetScene<'_> {
@@ -66,13 +72,15 @@ impl PresetScene<'_> {
         let [lower, upper] = self.bounds()?;
         let side = (upper[0] - lower[0]).min(upper[1] - lower[1]);
         let (size, why) = (side / preset.across, format!("{} across the {side} m of the bodies", preset.across));
-        let zones = self.zones(preset, size)?;
+        let mut zones = self.zones(preset, size)?;
+        zones.extend(self.at_openings(preset, size));
         if self.materials().any(|material| material.gives("band_width")) {
             let cell = |zone: &&Zone| zone.ranges[0].cell;
             let smallest = zones.iter().min_by(|a, b| cell(a).total_cmp(&cell(b)));
             let (size, why) = smallest.map_or((size, &why), |zone| (cell(&zone), &zone.why));
             return self.squares(size, why);
         }
+        zones.extend(self.at_corners(preset, size));
         if zones.is_empty() { self.equal(size, why) } else { self.graded(preset, (size, &why), &zones) }
     }
 
@@ -152,18 +160,24 @@ impl PresetScene<'_> {
             let wanted: Vec<f64> = wanted[axis].iter().copied().chain(edges).collect();
             Spacing { cell: size, growth, fine }.breakpoints(ends[axis], &wanted)
         };
-        let why =
-            format!("{why}, smaller ones around strips and loads, growing away by a factor of about {growth} each");
+        let around = match (zones.iter().any(|zone| zone.acts), zones.iter().all(|zone| zone.acts)) {
+            (_, true) => "strips and loads",
+            (true, false) => "strips, loads, holes, notches and re-entrant corners",
+            (false, false) => "holes, notches and re-entrant corners",
+        };
+        let why = format!("{why}, smaller ones around {around}, growing away by a factor of about {growth} each");
         let mut cells = of_breakpoints([along(0)?, along(1)?], why)?;
-        cells.edge = f64::INFINITY;
-        for Zone { ranges, why } in zones {
+        cells.edge = size;
+        for Zone { ranges, why, acts } in zones {
             let edges = [0, 1].map(|axis| cells.longest(axis, [ranges[axis].lower, ranges[axis].upper]));
             let range = |axis: usize| {
                 let [lower, upper] =
                     [ranges[axis].lower.max(ends[axis][0]), ranges[axis].upper.min(ends[axis][1])].map(brief);
                 format!("{} = {lower} to {upper}", NAMES[axis])
             };
-            cells.edge = edges.into_iter().fold(cells.edge, f64::min);
+            if *acts {
+                cells.edge = edges.into_iter().fold(cells.edge, f64::min);
+            }
             let value = format!("{} by {} m at {}, {}", brief(edges[0]), brief(edges[1]), range(0), range(1));
             cells.sizes.push((value, why.clone()));
         }
@@ -192,9 +206,37 @@ impl PresetScene<'_> {
                 brief(width),
                 preset.reach
             );
-            (cell > 0.0 && cell < size).then(|| Zone { ranges: [range(0), range(1)], why })
+            (cell > 0.0 && cell < size).then(|| Zone { ranges: [range(0), range(1)], why, acts: true })
         };
         Some(self.segments().filter_map(zone).collect())
+    }
+
+    /// Where holes and notches want cells smaller than `size` (m).
+    fn at_openings(&self, preset: &Preset, size: f64) -> Vec<Zone> {
+        let zone = |opening: PresetOpening| {
+            let (cell, reach) = (opening.width / preset.opening, preset.reach * opening.width);
+            let [lower, upper] = opening.bounds;
+            let range = |axis: usize| Fine { lower: lower[axis] - reach, upper: upper[axis] + reach, cell };
+            let (across, width) = (preset.opening, brief(opening.width));
+            let why = format!(
+                "{across} across the hole or notch {}, {width} m; and {} of it around",
+                opening.name, preset.reach
+            );
+            (cell > 0.0 && cell < size).then(|| Zone { ranges: [range(0), range(1)], why, acts: false })
+        };
+        self.openings().into_iter().filter_map(zone).collect()
+    }
+
+    /// Where steep re-entrant corners want cells smaller than `size` (m).
+    fn at_corners(&self, preset: &Preset, size: f64) -> Vec<Zone> {
+        let (cell, reach) = (size / preset.corner, AT_CORNER * size / preset.corner);
+        let zone = |at: [f64; 2]| {
+            let range = |axis: usize| Fine { lower: at[axis] - reach, upper: at[axis] + reach, cell };
+            let place = at.map(brief);
+            let why = format!("1/{} of the others at the re-entrant corner {place:?}", preset.corner);
+            Zone { ranges: [range(0), range(1)], why, acts: false }
+        };
+        self.re_entrant_corners().into_iter().map(zone).collect()
     }
 
     /// m  Width of a strip, loaded segment or rigid body; whether it is twice what is there, which a roller cuts in its
@@ -211,7 +253,7 @@ impl PresetScene<'_> {
     }
 
     /// m  lower and upper end of the grid per axis
-    fn ends(&self) -> Option<[[f64; 2]; 2]> {
+    pub(super) fn ends(&self) -> Option<[[f64; 2]; 2]> {
         let grid = self.root.record("grid")?;
         let (lower, upper) = (grid.pair("lower")?, grid.pair("upper")?);
         Some([0, 1].map(|axis| [lower[axis], upper[axis]]))

@@ -2,6 +2,7 @@
 //! the same crates again.
 
 mod axisymmetric;
+mod background;
 mod checkpoints;
 mod command_line;
 mod consolidation;
@@ -44,6 +45,7 @@ mod solid_told;
 mod solid_water;
 mod stages;
 mod still_water;
+mod stress_concentrations;
 mod strips;
 mod sweep;
 mod told;

@@ -30,7 +30,7 @@ pub struct Found<K: Kinematics<D>, const D: usize> {
     pub scale: f64,
     /// N m  |du_0 . f_0|, which energies were measured by; none where no direction was needed
     pub first_energy: Option<f64>,
-    /// J  of all internal forces, with a background
+    /// J  magnitudes of the works of all internal forces, with a background
     pub work: f64,
     /// Newton iterations
     pub newton_iterations: usize,

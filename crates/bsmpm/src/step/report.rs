@@ -66,10 +66,12 @@ pub struct StepReport {
     pub rigid: Vec<RigidReport>,
     /// what every rigid strip did
     pub strips: Vec<StripReport>,
-    /// J  work (u - w) . B (u - w) on the soft background, w the displacement that it does not resist, and f_int . u of
-    /// all internal forces, the background's among them; if there is a background
+    /// J  work (u - w) . B (u - w) on the soft background, w the displacement that it does not resist, and the
+    /// magnitudes of the works f_int u of all nodes and components, the background's among them; if there is a
+    /// background
     pub background: Option<[f64; 2]>,
-    /// -  largest force of the background on a node over the load there, if there are both
+    /// largest force of the background on a node over the RMS force of the nodes, with a background and without
+    /// prescribed motions in the step
     pub background_share: Option<f64>,
     /// J  second-order works of the step: that of elastic ground with its strain, and the actual one; in quasi-static
     /// analysis of material that yields, without water that flows
@@ -93,8 +95,7 @@ pub struct StepReport {
 
 impl StepReport {
     /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and
-    /// with a background three reductions, one exchange with the neighbours, and one gathering where ties are
-    /// published.
+    /// one with a background.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Self {
         let nodes = problem.nodes;
         let resisted = nodes.resisted(&found.u);
@@ -119,7 +120,7 @@ impl StepReport {
             rigid: Vec::new(),
             strips: Vec::new(),
             background: soft.map(|work| [problem.halo.total(&[work])[0], found.work]),
-            background_share: background_share(problem, &resisted),
+            background_share: None,
             second_order_works: None,
             energy: None,
             turnover: None,
@@ -132,28 +133,26 @@ impl StepReport {
     }
 }
 
-/// Loads below this part of the largest one are round-off.
-const NO_LOAD: f64 = 1e-9;
-
-/// The largest ratio, over the free nodes of all ranks, of the background's force on a node to the external force
-/// there; `None` without a background or without external forces. A node that only the background holds has about 1.
-fn background_share<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, resisted: &[f64]) -> Option<f64> {
+/// The largest force of the background on a free node of all ranks over the RMS force of the active nodes; `None`
+/// without a background or without forces. A function that has no other stiffness creeps by it.
+///
+/// One exchange with the neighbours, one reduction, and one gathering where ties are published.
+pub fn background_share<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    found: &Found<K, D>,
+) -> Option<f64> {
     let Problem { model, shape, nodes, halo, .. } = *problem;
     let blocks = nodes.background.as_ref()?;
     let mut force = Contributions::none(&model.grid, D, Vec::new());
-    blocks.multiply::<D>(shape, resisted, &mut force);
+    blocks.multiply::<D>(shape, &nodes.resisted(&found.u), &mut force);
     let mut force = halo.sum(&force);
     nodes.reduce(&mut [&mut force], halo);
-    let size = |forces: &[f64], node: usize| {
+    let size = |node: usize| {
         let free = Nodal::<D>::of(node).filter(|&at| nodes.free[at]);
-        free.map(|at| forces[at].powi(2)).sum::<f64>().sqrt()
+        free.map(|at| force[at].powi(2)).sum::<f64>().sqrt()
     };
-    let load = |node: usize| size(&nodes.f_ext, node);
-    let mut largest = [halo.owned().nodes().map(load).fold(0.0, f64::max)];
+    let mut largest = [halo.owned().nodes().map(size).fold(0.0, f64::max)];
     halo.maximum(&mut largest);
-    let is_loaded = |&node: &usize| load(node) > NO_LOAD * largest[0];
-    let share = |node: usize| size(&force, node) / load(node);
-    let mut share = [halo.owned().nodes().filter(is_loaded).map(share).fold(0.0, f64::max)];
-    halo.maximum(&mut share);
-    (largest[0] > 0.0).then_some(share[0])
+    let mean = found.scale / (nodes.active_nodes.max(1) as f64).sqrt();
+    (mean > 0.0).then(|| largest[0] / mean)
 }

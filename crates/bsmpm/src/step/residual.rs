@@ -43,7 +43,8 @@ pub struct Balance {
     pub scale: f64,
     /// N  the same two of each material's own nodes; empty in a scene of one material
     pub apart: Vec<[f64; 2]>,
-    /// J  f_int . u, the background's part among it; 0 without a background, which nobody else asks for
+    /// J  magnitudes of the works f_int u of all nodes and components, the background's part among it; 0 without a
+    /// background, which nobody else asks for
     pub work: f64,
     /// points inverted or not finite, over all ranks
     pub inverted: u64,
@@ -195,7 +196,7 @@ impl Balance {
             over_active(problem, |c| f_int[c].powi(2)),
             over_layers(problem.halo, D, |c| forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))),
             over_active(problem, supporting),
-            over_active(problem, |c| if soft { f_int[c] * u[c] } else { 0.0 }),
+            over_active(problem, |c| if soft { (f_int[c] * u[c]).abs() } else { 0.0 }),
         ];
         let kinds = whole.len() - 2;
         // Out of balance, external, internal, inertial, of supports and strips.

@@ -1,0 +1,136 @@
+//! Bodies of a plane as polygons, by what their records say.
+
+use super::{SurfaceKind, SurfacePoint};
+use crate::record::Record;
+use crate::region;
+use bsmpm::tensor::Vector;
+
+/// Sides of the regular polygon that stands for a circle: their middles lie on it, and their ends 0.1 % outside.
+const SIDES: usize = 64;
+/// Pieces of every side of a shape with few sides: a part of a side may bound the body.
+const PIECES: usize = 4;
+/// Sides up to which they are taken in pieces.
+const FEW: usize = 16;
+/// Sides that are looked at, times all sides, at most: of more of them every second, third and so on is taken.
+const MOST_WORK: usize = 1 << 16;
+
+/// A polygon, or one that stands for a circle.
+#[derive(Clone, Debug)]
+pub(crate) struct PlaneShape {
+    /// m
+    pub corners: Vec<[f64; 2]>,
+    /// Whether the corners are corners.
+    pub is_round: bool,
+}
+
+/// A body in a plane.
+#[derive(Clone, Debug)]
+pub(crate) struct PlaneBody {
+    pub whole: PlaneShape,
+    pub cuts: Vec<PlaneShape>,
+}
+
+impl PlaneShape {
+    pub(crate) fn of(record: &Record) -> Option<Self> {
+        if let Some(shape) = record.record("box") {
+            let ([x, y], [to_x, to_y]) = (shape.pair("lower")?, shape.pair("upper")?);
+            return Some(Self { corners: vec![[x, y], [to_x, y], [to_x, to_y], [x, to_y]], is_round: false });
+        }
+        if let Some(circle) = record.record("circle") {
+            let ([x, y], radius) = (circle.pair("center")?, circle.number("radius")?);
+            let angle = std::f64::consts::TAU / SIDES as f64;
+            let radius = radius / (0.5 * angle).cos();
+            let corner = |k: usize| {
+                let (sin, cos) = (k as f64 * angle).sin_cos();
+                [x + radius * cos, y + radius * sin]
+            };
+            return Some(Self { corners: (0..SIDES).map(corner).collect(), is_round: true });
+        }
+        let corners: Vec<[f64; 2]> =
+            record.rows("polygon")?.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
+        (corners.len() >= 3).then_some(Self { corners, is_round: false })
+    }
+
+    /// Whether a place lies inside: a ray to the right crosses its sides an odd number of times.
+    pub(crate) fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        let is_crossed =
+            |[a, b]: [[f64; 2]; 2]| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+        self.sides().filter(|side| is_crossed(*side)).count() % 2 == 1
+    }
+
+    fn sides(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
+        let next = self.corners.iter().cycle().skip(1);
+        self.corners.iter().zip(next).map(|(a, b)| [*a, *b])
+    }
+
+    /// m  its corners, each with the shorter one of its sides
+    pub(crate) fn vertices(&self) -> Vec<([f64; 2], f64)> {
+        let length = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
+        let lengths: Vec<f64> = self.sides().map(length).collect();
+        let before = lengths.iter().cycle().skip(lengths.len() - 1);
+        let shorter = lengths.iter().zip(before).map(|(after, before)| after.min(*before));
+        self.corners.iter().copied().zip(shorter).collect()
+    }
+
+    /// Pieces of its sides within a rectangle (m).
+    pub(crate) fn surface(&self, bounds: [[f64; 2]; 2]) -> Vec<SurfacePoint> {
+        let count = self.corners.len();
+        let pieces = if count <= FEW { PIECES } else { 1 };
+        let kind = match self.is_round {
+            true => SurfaceKind::Round,
+            false if count > FEW => SurfaceKind::Smooth,
+            false => SurfaceKind::Flat,
+        };
+        let every = (count * count).div_ceil(MOST_WORK);
+        let mut points = Vec::new();
+        for (edge, side) in self.sides().enumerate().step_by(every) {
+            let Some([a, b]) = clipped(side, bounds) else { continue };
+            let along = Vector::from([b[0] - a[0], b[1] - a[1], 0.0]);
+            let Some(normal) = Vector::from([-along[1], along[0], 0.0]).try_normalize(0.0) else { continue };
+            for piece in 0..pieces {
+                let at = Vector::from([a[0], a[1], 0.0]) + along * ((piece as f64 + 0.5) / pieces as f64);
+                points.push(SurfacePoint { at, normal, half: along * (0.5 / pieces as f64), edge, kind });
+            }
+        }
+        points
+    }
+}
+
+/// The part of a segment within a rectangle, m (Liang and Barsky 1984).
+fn clipped([a, b]: [[f64; 2]; 2], [lower, upper]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        let along = b[axis] - a[axis];
+        if along == 0.0 && !(lower[axis]..=upper[axis]).contains(&a[axis]) {
+            return None;
+        }
+        if along != 0.0 {
+            let parts = [(lower[axis] - a[axis]) / along, (upper[axis] - a[axis]) / along];
+            from = from.max(parts[0].min(parts[1]));
+            to = to.min(parts[0].max(parts[1]));
+        }
+    }
+    let place = |part: f64| [0, 1].map(|axis| a[axis] + part * (b[axis] - a[axis]));
+    (from < to).then(|| [place(from), place(to)])
+}
+
+impl PlaneBody {
+    pub(crate) fn of(record: &Record) -> Option<Self> {
+        let cuts: Option<Vec<PlaneShape>> = record.records("subtract").iter().map(PlaneShape::of).collect();
+        Some(Self { whole: PlaneShape::of(record)?, cuts: cuts? })
+    }
+
+    pub(crate) fn contains(&self, at: [f64; 2]) -> bool {
+        self.whole.contains(at) && !self.cuts.iter().any(|cut| cut.contains(at))
+    }
+
+    /// m  lower and upper corner of the rectangle around the whole shape
+    pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
+        region::bounds(&self.whole.corners)
+    }
+
+    /// Its shapes: the outline, and what is cut out of it.
+    pub(crate) fn shapes(&self) -> impl Iterator<Item = &PlaneShape> {
+        std::iter::once(&self.whole).chain(&self.cuts)
+    }
+}

@@ -1,0 +1,140 @@
+//! Pieces of the surfaces of shapes in space, by what their records say.
+
+use super::plane::PlaneShape;
+use super::{SurfaceKind, SurfacePoint};
+use crate::record::Record;
+use crate::region::plane;
+use crate::words::Axis;
+use bsmpm::tensor::Vector;
+
+/// Directions around the vertical in which revolved outlines are looked at.
+const AZIMUTHS: usize = 8;
+/// Circles of latitude on which a sphere is looked at.
+const LATITUDES: usize = 9;
+/// Triangles of a surface that are looked at, at most.
+const MOST_TRIANGLES: usize = 256;
+
+/// Pieces of the surface of a shape within a cuboid (m); of terrain none, which is no hole.
+pub(crate) fn surface_points(record: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
+    if record.gives("box") {
+        let shape = record.record("box")?;
+        return Some(cuboid([shape.vector("lower")?, shape.vector("upper")?], bounds));
+    }
+    if record.gives("sphere") {
+        let shape = record.record("sphere")?;
+        return Some(sphere(shape.vector("center")?.into(), shape.number("radius")?));
+    }
+    if record.gives("extrude") {
+        return extruded(record.record("extrude")?, bounds);
+    }
+    if record.gives("revolve") {
+        return revolved(record.record("revolve")?, bounds);
+    }
+    if record.gives("surface") {
+        let shape = record.record("surface")?;
+        let scale = shape.number("scale")?;
+        let corner = |numbers: &[f64], k: usize| Vector::from([0, 1, 2].map(|axis| scale * numbers[3 * k + axis]));
+        let rows = shape.rows("triangles")?;
+        let every = rows.len().div_ceil(MOST_TRIANGLES).max(1);
+        let triangles = rows.iter().step_by(every).map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
+        return Some(triangles.enumerate().filter_map(|(edge, corners)| triangle(corners, edge)).collect());
+    }
+    Some(Vec::new())
+}
+
+fn triangle([a, b, c]: [Vector<3>; 3], edge: usize) -> Option<SurfacePoint> {
+    let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+    Some(SurfacePoint { at: (a + b + c) / 3.0, normal, half: Vector::zeros(), edge, kind: SurfaceKind::Smooth })
+}
+
+/// Middles of the faces of a cuboid, as far as they lie within another one, m.
+fn cuboid(corners: [[f64; 3]; 2], bounds: [[f64; 3]; 2]) -> Vec<SurfacePoint> {
+    let lower = Vector::<3>::from_fn(|axis, _| corners[0][axis].max(bounds[0][axis]));
+    let upper = Vector::<3>::from_fn(|axis, _| corners[1][axis].min(bounds[1][axis]));
+    let face = |edge: usize| {
+        let axis = edge / 2;
+        let mut at = 0.5 * (lower + upper);
+        at[axis] = corners[edge % 2][axis];
+        let normal = Vector::<3>::from_fn(|component, _| f64::from(u8::from(component == axis)));
+        let mut half = 0.5 * (upper - lower);
+        half[axis] = 0.0;
+        SurfacePoint { at, normal, half, edge, kind: SurfaceKind::Flat }
+    };
+    (0..6).map(face).collect()
+}
+
+/// Places of a sphere on circles of latitude.
+fn sphere(center: Vector<3>, radius: f64) -> Vec<SurfacePoint> {
+    let mut points = Vec::new();
+    for latitude in 0..LATITUDES {
+        let up = std::f64::consts::PI * ((latitude as f64 + 0.5) / LATITUDES as f64 - 0.5);
+        for azimuth in 0..AZIMUTHS {
+            let (sin, cos) = (azimuth as f64 * std::f64::consts::TAU / AZIMUTHS as f64).sin_cos();
+            let normal = Vector::from([up.cos() * cos, up.cos() * sin, up.sin()]);
+            let (edge, half) = (points.len(), Vector::zeros());
+            points.push(SurfacePoint { at: center + normal * radius, normal, half, edge, kind: SurfaceKind::Round });
+        }
+    }
+    points
+}
+
+/// Sides of an outline at the middle of its length within a cuboid (m), and its ends.
+fn extruded(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
+    let outline = PlaneShape::of(shape)?;
+    let along = [Axis::X, Axis::Y, Axis::Z].iter().position(|axis| Some(*axis) == shape.word::<Axis>("along"))?;
+    let (from, to) = (shape.number("from")?, shape.number("to")?);
+    let [across, up] = plane(along);
+    let placed = |flat: Vector<3>| {
+        let mut at = Vector::zeros();
+        (at[across], at[up]) = (flat[0], flat[1]);
+        at
+    };
+    let axis = Vector::from_fn(|component, _| f64::from(u8::from(component == along)));
+    let (first, last) = (from.max(bounds[0][along]), to.min(bounds[1][along]));
+    let middle = axis * (0.5 * (first + last));
+    let length = axis * (0.5 * (last - first));
+    let side = |point: SurfacePoint| SurfacePoint {
+        at: placed(point.at) + middle,
+        normal: placed(point.normal),
+        half: placed(point.half) + length,
+        edge: point.edge,
+        kind: point.kind,
+    };
+    let mut points: Vec<SurfacePoint> =
+        outline.surface(bounds.map(|corner| [corner[across], corner[up]])).into_iter().map(side).collect();
+    let count = outline.corners.len();
+    let sum = outline.corners.iter().fold([0.0; 2], |sum, corner| [sum[0] + corner[0], sum[1] + corner[1]]);
+    let center = placed(Vector::from([sum[0] / count as f64, sum[1] / count as f64, 0.0]));
+    for (end, edge) in [(from, count), (to, count + 1)] {
+        points.push(SurfacePoint {
+            at: center + axis * end,
+            normal: axis,
+            half: Vector::zeros(),
+            edge,
+            kind: SurfaceKind::Flat,
+        });
+    }
+    Some(points)
+}
+
+/// Sides of an outline of radius and height in some directions around the vertical, between the heights of a cuboid
+/// (m).
+fn revolved(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
+    let outline = PlaneShape::of(shape)?;
+    let [x, y] = shape.pair("about")?;
+    let sides = outline.surface([[0.0, bounds[0][2]], [f64::MAX, bounds[1][2]]]);
+    let mut points = Vec::new();
+    for azimuth in 0..AZIMUTHS {
+        let (sin, cos) = (azimuth as f64 * std::f64::consts::TAU / AZIMUTHS as f64).sin_cos();
+        let turned = |flat: Vector<3>| Vector::from([flat[0] * cos, flat[0] * sin, flat[1]]);
+        let point = |side: &SurfacePoint| SurfacePoint {
+            at: turned(side.at) + Vector::from([x, y, 0.0]),
+            normal: turned(side.normal),
+            half: turned(side.half),
+            edge: azimuth * outline.corners.len() + side.edge,
+            kind: side.kind,
+        };
+        points.extend(sides.iter().map(point));
+    }
+    Some(points)
+}

@@ -1,0 +1,72 @@
+//! Cells across the holes and notches of bodies: with too few of them the stress at their edge is too small.
+
+use crate::case::{Case, NarrowestOpening};
+use crate::openings::{self, BodyOpening, GridFaces};
+use crate::record::Record;
+use crate::report::Report;
+use crate::words::Geometry;
+
+/// Part of the shortest cell by which the cell at a wall is looked for within the body.
+const WITHIN: f64 = 1e-3;
+
+/// Finds the opening of the bodies that has the fewest cells across, and warns of every one that has too few.
+pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
+    let corners = [case.grid.lower(), case.grid.upper()];
+    let faces = GridFaces { corners, supports: case.boundary, dims: case.grid.dims() };
+    let all = match case.geometry {
+        Geometry::Solid => openings::in_space(case, root, &faces),
+        Geometry::PlaneStrain | Geometry::Axisymmetric => openings::in_plane(root, &faces),
+    };
+    let mut narrowest: Option<NarrowestOpening> = None;
+    for opening in &all {
+        let found = NarrowestOpening {
+            path: path(root, opening),
+            width: opening.opening.width,
+            cells: cells(case, &faces, opening),
+            least: NarrowestOpening::enough(case.bodies[opening.body].points_per_cell),
+        };
+        if found.cells < found.least {
+            report.warn(format!(
+                "{}: the hole or notch of {} m is {:.1} cells across (at least {} needed): stress at its edge is off \
+                 by more than 10 %. Use smaller cells there (grid.knots), or accuracy = \"standard\".",
+                found.path,
+                found.brief_width(),
+                found.cells,
+                found.least
+            ));
+        }
+        if narrowest.as_ref().is_none_or(|known| found.cells / found.least < known.cells / known.least) {
+            narrowest = Some(found);
+        }
+    }
+    case.opening = narrowest;
+}
+
+/// The keys of what an opening is of.
+fn path(root: &Record, opening: &BodyOpening) -> String {
+    let body = &root.records("body")[opening.body];
+    match opening.cut {
+        Some(cut) => body.records("subtract")[cut].path.clone(),
+        None => body.path_of(super::shape::key(body)),
+    }
+}
+
+/// Cells across an opening, each as large as the one in the body beside a wall: the fewest of all walls.
+fn cells(case: &Case, faces: &GridFaces, opening: &BodyOpening) -> f64 {
+    let planes = faces.planes(case.bodies[opening.body].region.corners());
+    let within = WITHIN * case.grid.shortest();
+    let across = |wall: &openings::OpeningWall| {
+        let at = openings::folded(&planes, (wall.at - wall.normal * within).into());
+        let along = |axis: usize| wall.normal[axis] / edge(case, axis, at[axis]);
+        let slope = (0..case.grid.dims()).map(along).map(|part| part * part).sum::<f64>().sqrt();
+        wall.width * slope
+    };
+    opening.opening.walls.iter().map(across).fold(f64::INFINITY, f64::min)
+}
+
+/// m  edge of the cell at a place along an axis
+fn edge(case: &Case, axis: usize, at: f64) -> f64 {
+    let along = &case.grid.axes[axis];
+    let cell = along.first_cell(|cell| along.lower() + along.breakpoint(cell + 1) > at);
+    along.cell(cell.min(along.cells() - 1))
+}
