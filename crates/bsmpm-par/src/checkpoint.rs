@@ -15,7 +15,7 @@ pub(crate) use sanity::require;
 pub use state::{
     BooksForm, CheckpointState, CrossedState, Files, FlowedState, FreeFieldState, Outlet, RecordState, Row,
 };
-pub(crate) use state::{rigid_numbers, rows};
+pub(crate) use state::{rigid_accelerations, rigid_numbers, rows};
 pub(crate) use write::room;
 pub use write::{Contents, write};
 

@@ -198,7 +198,6 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         self.tell_strips_without_material(accepted);
         self.tell_drains(accepted);
         self.tell_rigid(accepted);
-        self.tell_meeting(accepted);
         self.tell_let_through(accepted);
         self.tell_outflow(accepted);
         self.record(&accepted.report);

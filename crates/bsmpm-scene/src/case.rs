@@ -109,6 +109,15 @@ pub struct Case {
 }
 
 impl Case {
+    /// Whether any interface has friction: faces of the grid, a footing, prescribed segments or rigid bodies.
+    pub fn has_interface_friction(&self) -> bool {
+        let faces = self.contacts.iter().flatten().flatten().map(|law| law.friction);
+        let footing = self.footing.iter().filter_map(|footing| footing.contact);
+        let strips = footing.chain(self.prescribed.iter().filter_map(|prescribed| prescribed.contact));
+        let rigid = self.rigid.iter().map(|rigid| rigid.friction);
+        faces.chain(strips.map(|contact| contact.law.friction)).chain(rigid).any(|friction| friction > 0.0)
+    }
+
     /// Takes over the repeated breakpoints of a run that goes on, whatever the program would place today.
     pub fn keep_lines(&mut self, lines: [Vec<Line>; 3]) {
         if self.grid.lines == lines {

@@ -32,6 +32,8 @@ mod solid;
 mod solver;
 mod stage;
 mod strip;
+mod touching;
+mod uplift;
 mod water;
 
 pub use flow::HELD_WATER;
@@ -181,6 +183,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     limit_load::complete(&mut case, record, limit_load::Preparation { stiffness, inside_cells }, report);
     meeting::check(&case, record, report);
     opening::check(&mut case, record, report);
+    touching::check(&case, record, report);
     material::band::check(&case, record, report);
     physics::check(&case, record, report);
     lasting::check(&case, record, report);

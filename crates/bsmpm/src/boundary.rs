@@ -169,6 +169,14 @@ impl<const D: usize> Boundary<D> {
         }
     }
 
+    /// Whether anything that acts has friction: faces, strips or rigid bodies.
+    pub fn has_friction(&self) -> bool {
+        let faces = self.supports.iter().filter_map(|support| support.contact);
+        let strips = self.strips.iter().filter(|strip| strip.acts()).filter_map(|strip| strip.contact);
+        let laws = faces.chain(strips.map(|contact| contact.law)).map(|law| law.friction);
+        laws.chain(self.rigid.iter().filter(|body| body.acts).map(|body| body.friction)).any(|friction| friction > 0.0)
+    }
+
     /// The faces of the grid that no material leaves, per axis the lower and the upper one: their normal component is
     /// held.
     pub fn closed(&self) -> [[bool; 2]; D] {

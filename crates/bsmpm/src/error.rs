@@ -175,6 +175,12 @@ pub enum StepError {
         /// Number of the body.
         body: usize,
     },
+    /// Rigid bodies would overlap: they do not touch each other.
+    #[error("rigid bodies {} and {} overlap", bodies[0], bodies[1])]
+    Overlapping {
+        /// Numbers of the bodies.
+        bodies: [usize; 2],
+    },
     /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
     #[error(
         "energy made: what moves, strains and is dissipated exceeds the {given:.3e} J of the start and of all work since by \

@@ -253,7 +253,9 @@ impl<const D: usize> Undeformed<D> {
             nodes.f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
         }
         let movable = nodes.movable();
-        let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, 0.0));
+        let mut grips =
+            StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, 0.0));
+        grips.wet(nodes.pore_pressure.as_ref());
         Ok(Self { shape, nodes, grips })
     }
 

@@ -24,7 +24,7 @@ pub use report::{Counts, StepReport};
 
 use crate::background::Resisted;
 use crate::boundary::strip::StripAttachments;
-use crate::boundary::{Anchors, Surface, load};
+use crate::boundary::{Anchors, Surface, load, rigid};
 use crate::energy::Draft;
 use crate::error::StepError;
 use crate::free_field::FreeField;
@@ -69,11 +69,15 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     }
     let movable = nodes.movable();
     let mut grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, dt));
+    grips.wet(nodes.pore_pressure.as_ref());
     let found = solve::contact::find(model, &shape, &mut nodes, (&mut grips, points), guess, (halo, solver), counts)?; // (3)-(9)
     let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
     commit::check_inside(model, &shape, points, &found.u, halo)?;
     let (strips, traction) = grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
     let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
+    if let Some(bodies) = rigid::overlapping(&model.boundary.rigid, &bodies) {
+        return Err(StepError::Overlapping { bodies });
+    }
     let carried = nodes.rigid.carried(&found.u, points.len(), halo);
     let held = nodes.rigid.held(&found.u, halo);
     let mut report = StepReport { dt, strips, rigid, ..StepReport::of(&problem, &found) };

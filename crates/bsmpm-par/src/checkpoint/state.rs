@@ -76,6 +76,10 @@ pub struct CheckpointState {
     /// work, J; none of a run without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rigid: Vec<[f64; 8]>,
+    /// Of every rigid body the accelerations (m/s2, m/s2, rad/s2) that the next step starts with; none where it starts
+    /// without, and of a run by a version that had none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rigid_accelerations: Vec<Option<[f64; 3]>>,
     /// What the histories go on from.
     pub record: RecordState,
     /// Strips of which it was told that they hold nothing and, their number added, that they have let go; drains and
@@ -272,16 +276,18 @@ impl CheckpointState {
             pressure: of_loads(&self.pressure[0])?,
             anchors,
             held: vectors(&self.held)?,
-            bodies: self.rigid.iter().map(rigid_state).collect(),
+            bodies: (0..self.rigid.len()).map(|body| self.rigid_state(body)).collect(),
             crossed: self.crossed.volumes(),
             flowed: self.flowed.as_ref().map(FlowedState::flow),
         })
     }
-}
 
-/// A rigid body's state from its numbers.
-fn rigid_state(&[x, y, angle, vx, vy, spin, slipped, work]: &[f64; 8]) -> RigidState {
-    RigidState { moved: [x, y, angle].into(), velocity: [vx, vy, spin].into(), slipped, work }
+    /// The state of a rigid body.
+    fn rigid_state(&self, body: usize) -> RigidState {
+        let [x, y, angle, vx, vy, spin, slipped, work] = self.rigid[body];
+        let acceleration = self.rigid_accelerations.get(body).copied().flatten().map(Vector::from);
+        RigidState { moved: [x, y, angle].into(), velocity: [vx, vy, spin].into(), acceleration, slipped, work }
+    }
 }
 
 /// The numbers of a rigid body's state.
@@ -289,6 +295,14 @@ pub(crate) fn rigid_numbers(state: &RigidState) -> [f64; 8] {
     let [x, y, angle]: [f64; 3] = state.moved.into();
     let [vx, vy, spin]: [f64; 3] = state.velocity.into();
     [x, y, angle, vx, vy, spin, state.slipped, state.work]
+}
+
+/// The accelerations of rigid bodies that the next step starts with; empty where there are none.
+pub(crate) fn rigid_accelerations(states: &[RigidState]) -> Vec<Option<[f64; 3]>> {
+    match states.iter().any(|state| state.acceleration.is_some()) {
+        true => states.iter().map(|state| state.acceleration.map(Into::into)).collect(),
+        false => Vec::new(),
+    }
 }
 
 /// Whether no load follows the surface.

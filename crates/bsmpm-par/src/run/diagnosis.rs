@@ -138,6 +138,13 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "a quasi-static analysis knows no rigid body that nothing holds: leave a motion out of `free`, let it start on the \
              soil, or make the analysis dynamic",
         ],
+        StepError::Overlapping { bodies } => {
+            let [one, other] = bodies.map(|number| case.rigid[number].name.as_str());
+            return vec![format!(
+                "keep rigid `{one}` and rigid `{other}` apart, as rigid bodies do not touch each other: change their paths, \
+                 end the analysis before they meet, or make them one polygon"
+            )];
+        }
         StepError::Inverted { .. } => &[
             "material turned inside out: more steps ([analysis] steps or dt), or a larger [solver] background",
             "look at the points named: loose points at a free surface are the usual ones",

@@ -2,7 +2,8 @@
 
 use super::Run;
 use crate::checkpoint::{
-    self, CheckpointState, Contents, CrossedState, FlowedState, FreeFieldState, Refusal, rigid_numbers, rows,
+    self, CheckpointState, Contents, CrossedState, FlowedState, FreeFieldState, Refusal, rigid_accelerations,
+    rigid_numbers, rows,
 };
 use crate::launch;
 use bsmpm::kinematics::Kinematics;
@@ -160,6 +161,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             held: rows(&surface.held),
             free_field: simulation.points.free_field.iter().map(FreeFieldState::of).collect(),
             rigid: surface.bodies.iter().map(rigid_numbers).collect(),
+            rigid_accelerations: rigid_accelerations(&surface.bodies),
             pressure: [
                 if surface.pressure.iter().all(Vec::is_empty) { Vec::new() } else { rows(&surface.pressure) },
                 Vec::new(),

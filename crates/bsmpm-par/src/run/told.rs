@@ -52,23 +52,6 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
     }
 
-    /// Rigid bodies do not touch each other.
-    pub(super) fn tell_meeting(&mut self, accepted: &Accepted) {
-        let (bodies, reports) = (&self.simulation.model.boundary.rigid, &accepted.report.rigid);
-        let meets = |a: usize, b: usize| bodies[a].reaches_into(&reports[a].moved, (&bodies[b], &reports[b].moved));
-        let pairs = (0..reports.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
-        let meeting: Vec<(usize, usize)> = pairs.filter(|&(a, b)| meets(a, b) || meets(b, a)).collect();
-        for (a, b) in meeting {
-            let (one, other) = (self.case.rigid[a].name.clone(), self.case.rigid[b].name.clone());
-            if self.told_rigid.insert(2 * self.case.rigid.len() + a * self.case.rigid.len() + b) {
-                self.warn(format!(
-                    "rigid `{one}`: at t = {} it is in rigid `{other}`: rigid bodies do not touch each other, and go through",
-                    accepted.t
-                ));
-            }
-        }
-    }
-
     /// Faces of the grid hold material, and let rigid bodies through.
     pub(super) fn tell_let_through(&mut self, accepted: &Accepted) {
         let count = self.case.rigid.len();

@@ -91,10 +91,13 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
             );
             record.error("from", message, report);
         }
-        Other::Corner { apart, .. } => report.warn(format!(
-            "{name} and {other} share a corner, and their motions differ there by {apart:.3e} m in a direction that both hold. \
-             Forces near the corner are wrong. Use components = \"normal\" in one of them, or leave a cell between them."
-        )),
+        Other::Corner { apart, .. } => {
+            let message = format!(
+                "{name} and {other} share a corner, and their motions differ there by {apart:.3e} m in a direction that both \
+                 hold. The soil cannot follow both. Use components = \"normal\" in both, or leave a cell between them."
+            );
+            record.error("from", message, report);
+        }
         Other::Strip { act_together: false, .. } => {
             let message = format!(
                 "{other} meets {name}, moves differently, and acts since another time. The soil cannot follow both. Let both \

@@ -3,7 +3,6 @@
 use crate::case::{Body, Case, Support};
 use crate::record::Record;
 use crate::report::Report;
-use crate::surfaces::name_of_strip;
 use crate::words::{Side, Word};
 
 const KEY: &str = "ru";
@@ -57,39 +56,17 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     if bodies().any(|number| !wet(number)) {
         report.note(material.path_of(KEY), "this material only", "pores of the others hold no pressure");
     }
-    warn_of_friction(case, report);
     warn_of_thin_bodies(case, report);
+    warn_of_cubic_splines(case, report);
     if !case.tractions.is_empty() || !case.point_loads.is_empty() {
         report.note(material.path_of(KEY), "of the weight alone", "loads raise no pore pressure: they are drained");
     }
 }
 
-/// Faces of the grid divide the normal force between the soil and its water, strips and rigid bodies do not.
-fn warn_of_friction(case: &Case, report: &mut Report<'_>) {
-    let footing = case.footing.iter().map(|footing| footing.contact);
-    let contacts = footing.chain(case.prescribed.iter().map(|prescribed| prescribed.contact));
-    let strips = contacts.enumerate().filter(|(_, contact)| contact.is_some_and(|of| of.law.friction > 0.0));
-    let strips = strips.map(|(number, _)| name_of_strip(case, number));
-    let rigid = case.rigid.iter().enumerate().filter(|(_, rigid)| rigid.friction > 0.0);
-    let names: Vec<String> = strips.chain(rigid.map(|(number, _)| format!("rigid.{number}"))).collect();
-    if names.is_empty() {
-        return;
-    }
-    let ratio = case.materials.iter().map(|named| named.ratio).fold(0.0, f64::max);
-    report.warn(format!(
-        "friction of {} acts on the total normal force, water included: with ru = {ratio} it is up to {:.2} times too large. \
-         Multiply its coefficient by {:.2} (1 - ru), or use [boundary] friction.",
-        names.join(", "),
-        1.0 / (1.0 - ratio),
-        1.0 - ratio
-    ));
-}
-
 /// A face divides the normal force right where the material at it is at least a cell thick: in a body of half a cell
 /// friction was 25 % too large.
 fn warn_of_thin_bodies(case: &Case, report: &mut Report<'_>) {
-    let has_friction = |axis: usize| case.contacts[axis].iter().flatten().any(|law| law.friction > 0.0);
-    for axis in (0..case.grid.dims()).filter(|axis| has_friction(*axis)) {
+    for axis in (0..case.grid.dims()).filter(|axis| has_friction(case, *axis)) {
         let edge = case.grid.axes[axis].longest();
         let thickness = |body: &Body| body.region.corners().map(|corner| corner[axis]);
         let thickest = case.bodies.iter().map(thickness).map(|[lower, upper]| upper - lower);
@@ -101,4 +78,19 @@ fn warn_of_thin_bodies(case: &Case, report: &mut Report<'_>) {
             ));
         }
     }
+}
+
+/// With cubic splines the normal forces of nodes near a corner are too far from their pore pressures.
+fn warn_of_cubic_splines(case: &Case, report: &mut Report<'_>) {
+    let has_side = (0..case.grid.dims() - 1).any(|axis| has_friction(case, axis));
+    if case.grid.order > 2 && has_side {
+        report.warn(
+            "ru: with cubic splines friction on sides of the grid is up to 6 % off. Use grid.order = \"quadratic\".",
+        );
+    }
+}
+
+/// Whether a face across an axis has friction.
+fn has_friction(case: &Case, axis: usize) -> bool {
+    case.contacts[axis].iter().flatten().any(|law| law.friction > 0.0)
 }

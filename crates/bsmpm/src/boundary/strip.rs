@@ -27,6 +27,7 @@ use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
 use crate::schedule::between;
 use crate::tensor::Vector;
+use crate::water::carried::PorePressure;
 use grip::ContactState;
 use point::{LENGTHS, StripPoint, StripSums, contact_report};
 use std::collections::{BTreeMap, BTreeSet};
@@ -234,6 +235,7 @@ impl<const D: usize> StripAttachments<D> {
                 held.push(StripPoint {
                     strip: number,
                     point: index,
+                    place: x,
                     attachment,
                     area: point.area,
                     penalty: strip.penalty,
@@ -245,6 +247,17 @@ impl<const D: usize> StripAttachments<D> {
             }
         }
         Self { offsets, span: (t, dt), held }
+    }
+
+    /// Takes what pore water carries of the pressure at points in contact off what friction acts on.
+    pub fn wet(&mut self, pores: Option<&PorePressure<D>>) {
+        let Some(pores) = pores else { return };
+        let offsets = &self.offsets;
+        for held in &mut self.held {
+            let Some(attachment) = held.attachment.iter().flatten().next() else { continue };
+            let water = pores.at(attachment.weights(offsets), &held.place);
+            held.grip.iter_mut().for_each(|grip| grip.water = water);
+        }
     }
 
     /// Expects of points in contact what the last displacement, `guess`, makes likely.

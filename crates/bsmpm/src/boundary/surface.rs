@@ -276,6 +276,11 @@ impl Attachment {
         Self::by(grid, (grid.order(), offsets), counts, x)
     }
 
+    /// The nodes with their shares, by the `offsets` that it was made with.
+    pub fn weights<'a>(&'a self, offsets: &'a [usize]) -> impl Iterator<Item = (usize, f64)> + 'a {
+        offsets.iter().zip(&self.N).filter(|(_, N)| **N != 0.0).map(|(offset, N)| (self.first_node + offset, *N))
+    }
+
     fn by<const D: usize>(
         grid: &Grid<D>,
         (width, offsets): (usize, &[usize]),

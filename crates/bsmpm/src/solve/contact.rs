@@ -50,8 +50,20 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         let judged = if is_rough { &rough } else { model };
         let problem = Problem { model: judged, shape, nodes, grips, points, halo };
         let found = match nodes.rigid.is_coupled() {
-            true => super::find(&problem, &u, &mut Bordered::of(&problem, solver), counts)?,
-            false => super::find(&problem, &u, solver, counts)?,
+            true => super::find(&problem, &u, &mut Bordered::of(&problem, solver), counts),
+            false => super::find(&problem, &u, solver, counts),
+        };
+        let found = match found {
+            Ok(found) => found,
+            // With all nodes of its faces sliding, what they alone hold is free to move.
+            Err(error) if !faces || error.is_final() || nodes.contacts.hold_neutral(&model.grid, &u, halo) == 0 => {
+                return Err(error);
+            }
+            Err(_) => {
+                nodes.meet();
+                nodes.count(halo);
+                continue;
+            }
         };
         history.extend(found.history.iter().copied());
         first_guess &= found.first_guess;

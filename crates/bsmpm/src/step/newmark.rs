@@ -40,6 +40,12 @@ impl Newmark {
         Self { alpha: 0.0, beta: 0.5, gamma: 1.0 }
     }
 
+    /// β = γ = 1, with a = 0 at the start of the step: of first order, and the end's velocity is that of the step. What
+    /// is stopped rests then, where the others throw it back.
+    pub fn backward_euler() -> Self {
+        Self { alpha: 0.0, beta: 1.0, gamma: 1.0 }
+    }
+
     /// 1/s2  what multiplies u in a': `1/(β dt²)`.
     #[inline]
     fn stiffness(&self, dt: f64) -> f64 {

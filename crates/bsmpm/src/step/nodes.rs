@@ -20,7 +20,7 @@ use crate::step::extension::Extension;
 use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
 use crate::tensor::Vector;
-use crate::water::carried;
+use crate::water::carried::{self, PorePressure};
 use crate::water::nodes::Pores;
 use std::borrow::Cow;
 
@@ -63,6 +63,8 @@ pub struct Nodes<const D: usize> {
     pub contacts: Contacts<D>,
     /// points near rigid bodies
     pub rigid: RigidContacts<D>,
+    /// pore pressure that the soil carries, which friction does not act on; `None` without, or without friction
+    pub pore_pressure: Option<PorePressure<D>>,
     /// of faces that absorb waves
     pub dashpots: Dashpots,
     /// nodes of one material alone, in a scene of several
@@ -124,6 +126,7 @@ impl<const D: usize> Nodes<D> {
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
         let mut free: Vec<bool> =
             velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c))).collect();
+        let pore_pressure = PorePressure::of(model, (shape, points), volume, t + dt, halo);
         let rigid = match model.boundary.rigid.is_empty() {
             true => RigidContacts::default(),
             false => {
@@ -133,7 +136,8 @@ impl<const D: usize> Nodes<D> {
                     shape,
                     body_force: model.body_force(t + dt).unwrap_or_else(Vector::zeros),
                     free: &free,
-                    dynamic: model.regime == Regime::Dynamic,
+                    newmark: (model.regime == Regime::Dynamic).then_some(model.newmark),
+                    pore_pressure: pore_pressure.as_ref(),
                 };
                 let young = |p: usize| model.young(points, p);
                 RigidContacts::of(&around, young, (t, dt), last, halo)?
@@ -145,7 +149,8 @@ impl<const D: usize> Nodes<D> {
         let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
         let contacts = match model.boundary.has_contact() {
             true => {
-                let water = carried::forces_on_faces(model, (shape, points), volume, t + dt, halo);
+                let on_faces = |pores: &PorePressure<D>| pores.forces_on_faces(model, (shape, points), volume, halo);
+                let water = pore_pressure.as_ref().map(on_faces);
                 let window = (&model.boundary, &model.grid);
                 Contacts::of(window, (shape, points), &free, (t, last), water.as_deref(), halo)
             }
@@ -185,6 +190,7 @@ impl<const D: usize> Nodes<D> {
             pores,
             contacts,
             rigid,
+            pore_pressure,
             dashpots,
             f_ext,
             followers,

@@ -3,6 +3,7 @@
 mod draining;
 mod dynamic;
 mod element;
+mod friction;
 mod large;
 mod mandel;
 mod newton;

@@ -8,8 +8,8 @@ use crate::tensor::Vector;
 /// what F tells of the gap is off by the curvature of the motion.
 const KEPT: f64 = 0.05;
 
-/// Times the force by which statuses may be contradicted, by which friction may be off Coulomb's law for the slip: the
-/// tolerance of the forces themselves.
+/// Times the force by which statuses may be contradicted, by which friction may be off Coulomb's law for the slip, or
+/// for a node that alone sticks: the tolerance of the forces themselves.
 const TURNED: f64 = 100.0;
 
 /// Parts of the displacement that is round-off, beside friction, from which on a slip has left it.
@@ -40,6 +40,8 @@ pub(super) struct ContactNode<const D: usize> {
     pub water_force: f64,
     /// what it does
     pub status: Status<D>,
+    /// whether it sticks as the one between others that slide in opposite directions
+    pub is_neutral: bool,
     /// components that did not move in the last step
     pub rested: [bool; D],
     /// N/m  what resists a slip beside the direction of friction: in space, where it is known
@@ -178,7 +180,8 @@ impl<const D: usize> ContactNode<D> {
         match self.status {
             Status::Stick => {
                 let held = self.friction(reaction);
-                let slips = held.norm() > self.limit(reaction) + force;
+                let doubt = if self.is_neutral { TURNED * force } else { force };
+                let slips = held.norm() > self.limit(reaction) + doubt;
                 if slips { of(Status::Slip(-held.normalize())) } else { kept }
             }
             Status::Slip(direction) if self.law.friction > 0.0 => {

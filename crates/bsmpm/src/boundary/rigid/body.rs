@@ -40,6 +40,8 @@ pub struct RigidState {
     pub moved: Vector<3>,
     /// m/s, m/s and rad/s; without inertia per pseudo-time
     pub velocity: Vector<3>,
+    /// m/s2, m/s2 and rad/s2  that the next step starts with; `None` without inertia, at the start and after a blow
+    pub acceleration: Option<Vector<3>>,
     /// m  way of the material along its outline, mean by normal force of every step
     pub slipped: f64,
     /// J  its work on the material so far
@@ -106,6 +108,17 @@ impl<const D: usize> RigidBody<D> {
         let (sin, cos) = if D == 2 { moved[2].sin_cos() } else { (0.0, 1.0) };
         Pose { center: self.center + Vector::<D>::from_fn(|k, _| moved[k]), cos, sin }
     }
+}
+
+/// The first pair of bodies that overlap, if any do. Such a pair that has not moved against each other since the start
+/// does not count: it may be drawn so, as parts of one shape.
+pub fn overlapping<const D: usize>(bodies: &[RigidBody<D>], states: &[RigidState]) -> Option<[usize; 2]> {
+    let overlap = |a: usize, b: usize| {
+        let [one, other] = [a, b].map(|number| (&bodies[number], &states[number].moved));
+        one.1 != other.1 && (one.0.reaches_into(one.1, other) || other.0.reaches_into(other.1, one))
+    };
+    let mut pairs = (0..states.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
+    pairs.find(|&[a, b]| overlap(a, b))
 }
 
 impl<const D: usize> Pose<D> {

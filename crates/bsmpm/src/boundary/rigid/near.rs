@@ -1,18 +1,18 @@
 //! Which points are near a rigid body in a step, how far from it, and what they start the step as.
 
-use super::body::{MOTIONS, RigidBody, RigidState};
+use super::body::{RigidBody, RigidState};
+use super::motion::BodyInStep;
 use super::point::{Grip, RigidPoint, along, tangents};
-use super::{BodyInStep, PENALTY, RigidContacts};
+use super::{CLOSE, PENALTY, RigidContacts};
 use crate::error::StepError;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use crate::points::Points;
+use crate::step::newmark::Newmark;
 use crate::tensor::Vector;
-use nalgebra::Matrix3;
+use crate::water::carried::PorePressure;
 
-/// Part of a cell within which a point is on the outline as a step begins.
-const CLOSE: f64 = 1e-6;
 /// Steps ahead of the meeting from which on material is near a body: it may be faster or slower than it starts.
 const MEETING: f64 = 2.0;
 /// Value of a node's function at a body from which on the body may stop the node.
@@ -46,8 +46,10 @@ pub struct Surroundings<'a, const D: usize> {
     pub body_force: Vector<D>,
     /// components that nothing else holds
     pub free: &'a [bool],
-    /// whether inertia acts
-    pub dynamic: bool,
+    /// integration of inertia; `None` without
+    pub newmark: Option<Newmark>,
+    /// pore pressure that the soil carries, if any
+    pub pore_pressure: Option<&'a PorePressure<D>>,
 }
 
 impl<const D: usize> RigidContacts<D> {
@@ -70,11 +72,11 @@ impl<const D: usize> RigidContacts<D> {
             points: Vec::new(),
             bodies: Vec::new(),
             length: dt,
-            dt: if around.dynamic { dt } else { 0.0 },
+            dt: if around.newmark.is_some() { dt } else { 0.0 },
             edge: around.reaching.grid.smallest_edge(),
             moving: Vec::new(),
         };
-        let mut moving = vec![0.0; if around.dynamic { around.reaching.grid.nodes() } else { 0 }];
+        let mut moving = vec![0.0; if around.newmark.is_some() { around.reaching.grid.nodes() } else { 0 }];
         let mut near = vec![0.0; 2 * bodies.len()];
         for (number, (body, state)) in bodies.iter().zip(states).enumerate() {
             let mut at = BodyInStep::of(body, state, (t, dt), around);
@@ -83,7 +85,9 @@ impl<const D: usize> RigidContacts<D> {
                 at.least = contacts.gather((number, &at), (around, &young), dt);
             }
             for point in &contacts.points[found..] {
-                if !around.dynamic || point.gap > MEETING * comes(point, &at, around, dt) + CLOSE * contacts.edge {
+                if around.newmark.is_none()
+                    || point.gap > MEETING * comes(point, &at, around, dt) + CLOSE * contacts.edge
+                {
                     continue;
                 }
                 near[2 * number] = 1.0;
@@ -96,13 +100,13 @@ impl<const D: usize> RigidContacts<D> {
         halo.maximum(&mut near);
         for (at, near) in contacts.bodies.iter_mut().zip(near.chunks_exact(2)) {
             at.least = -near[1];
-            if around.dynamic && near[0] == 0.0 {
+            if around.newmark.is_some() && near[0] == 0.0 {
                 at.fly(dt);
             }
         }
         let Self { points, bodies: at, .. } = &mut contacts;
         points.retain(|point| at[point.body].flight.is_none());
-        if around.dynamic {
+        if around.newmark.is_some() {
             halo.max(&mut moving, 1);
             let marked = |(c, free): (usize, &bool)| *free && moving[Nodal::<D>::node(c)] > 0.0;
             contacts.moving = around.free.iter().enumerate().map(marked).collect();
@@ -116,7 +120,10 @@ impl<const D: usize> RigidContacts<D> {
             (if is_met { point.met(&moved) } else { Grip::Open }, moved)
         };
         let grips: Vec<(Grip, Vector<D>)> = contacts.points.iter().map(grip).collect();
-        contacts.points.iter_mut().zip(grips).for_each(|(point, (grip, moved))| point.take(grip, &moved));
+        contacts.points.iter_mut().zip(&grips).for_each(|(point, (grip, moved))| point.take(*grip, moved));
+        let moved: Vec<Vector<D>> = grips.iter().map(|(_, moved)| *moved).collect();
+        contacts.hold_neutral(&moved, &vec![false; moved.len()], halo);
+        contacts.strike(halo);
         contacts.settle(halo)?;
         Ok(contacts)
     }
@@ -151,19 +158,23 @@ impl<const D: usize> RigidContacts<D> {
                 }
                 let volume = points.volume[p] * points.F.at(p).determinant();
                 let mut stiffness = young(p) * volume / (2.0 * whole * edge);
-                if around.dynamic {
+                if around.newmark.is_some() {
                     stiffness += points.mass[p] / (dt * dt);
                 }
                 let place = x - normal * reach;
                 let seen = before.seen(&place);
                 let tangents = tangents(&normal);
                 let step = after.place(&seen) - place;
+                let N = values(shape, p, &(place - x));
+                let pores = around.pore_pressure.filter(|_| body.friction > 0.0);
+                let water =
+                    pores.map_or(0.0, |pores| pressing(pores, around, (patch.first_node, p), (&normal, &place)));
                 let carried = points.grip.as_ref().map_or([0.0; 2], |grip| along(&tangents, &grip[p]));
                 self.points.push(RigidPoint {
                     body: number,
                     point: p,
                     first_node: patch.first_node,
-                    N: values(shape, p, &(place - x)),
+                    N,
                     normal,
                     gap,
                     motion: along(&tangents, &step),
@@ -172,6 +183,7 @@ impl<const D: usize> RigidContacts<D> {
                     arm: after.turned(&seen),
                     stiffness: PENALTY * stiffness,
                     friction: body.friction,
+                    water,
                     carried,
                     grip: Grip::Open,
                     transverse_share: 0.0,
@@ -179,46 +191,6 @@ impl<const D: usize> RigidContacts<D> {
             }
         }
         least
-    }
-}
-
-impl<const D: usize> BodyInStep<D> {
-    /// With its motions as they are without the soil.
-    fn of(body: &RigidBody<D>, state: &RigidState, (t, dt): (f64, f64), around: &Surroundings<'_, D>) -> Self {
-        let [before, after] = [t, t + dt].map(|t| body.pick(&state.moved, &body.on_path(t)));
-        let before = RigidState { moved: before, ..*state };
-        let (resists, least) = (Matrix3::zeros(), f64::INFINITY);
-        let zero = Vector::zeros();
-        let still = Self {
-            body: RigidBody { free: [false; MOTIONS], friction: 0.0, ..body.clone() },
-            before,
-            predicted: after,
-            external: zero,
-            inertia: zero,
-            resists,
-            flight: None,
-            least,
-        };
-        if !body.acts {
-            return still;
-        }
-        let external = body.acting(t + dt, &around.body_force);
-        // Without inertia it goes on as it did: soil is expected to.
-        let (mut step, mut inertia) = (state.velocity * dt, Vector::zeros());
-        if around.dynamic {
-            inertia = body.mass / (dt * dt);
-            step += external.component_div(&body.mass) * (dt * dt);
-        }
-        let predicted = body.pick(&(before.moved + step), &after);
-        Self { body: body.clone(), predicted, external, inertia, ..still }
-    }
-
-    /// Goes on as nothing is near: a constant force is then exact.
-    fn fly(&mut self, dt: f64) {
-        let gained = self.external.component_div(&self.body.mass) * dt;
-        let moved = self.before.moved + (self.before.velocity + gained * 0.5) * dt;
-        self.predicted = self.body.pick(&moved, &self.predicted);
-        self.flight = Some(self.before.velocity + gained);
     }
 }
 
@@ -238,6 +210,34 @@ pub(super) fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
 /// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at
 /// the start, deformed by its F; and an edge of that cell.
 pub(super) fn reach<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vector<D>) -> (f64, f64) {
+    let (half, size, edge) = half_edges(around, p, normal);
+    let reach = half.iter().map(|half| half.powi(2)).sum::<f64>().sqrt();
+    (reach.clamp(STRETCH[0] * size.min(), STRETCH[1] * size.max()), edge)
+}
+
+/// N  force of pore water at a point of a cell whose functions begin with a node, along the normal at a place, m.
+fn pressing<const D: usize>(
+    pores: &PorePressure<D>,
+    around: &Surroundings<'_, D>,
+    (first_node, p): (usize, usize),
+    (normal, place): (&Vector<D>, &Vector<D>),
+) -> f64 {
+    let (shape, points) = (around.shape, around.reaching.points);
+    let values = shape.of(p).into_iter().zip(shape.offsets());
+    let pressure = pores.at(values.map(|((N, _), offset)| (first_node + offset, N)), place);
+    pressure * points.volume[p] * points.F.at(p).determinant() / column(&around.reaching, p, normal)
+}
+
+/// m  how far a point spans along a normal with the edge of its box that spans most: its volume over that is the area
+/// of an outline that belongs to it, as one row of points touches an outline.
+fn column<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vector<D>) -> f64 {
+    let (half, size, _) = half_edges(around, p, normal);
+    (2.0 * half.amax()).max(STRETCH[0] * size.min())
+}
+
+/// m  how far each half edge of a point's box, deformed by its F, goes along a normal; those half edges; and an edge of
+/// the point's cell at the start.
+fn half_edges<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vector<D>) -> (Vector<D>, Vector<D>, f64) {
     let Reaching { grid, points, reach, weight } = around;
     let placed = points.x[p] - points.u[p];
     let placed = if grid.locate(&placed).is_some() { placed } else { points.x[p] };
@@ -249,9 +249,7 @@ pub(super) fn reach<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: 
     let share = share * (points.volume[p] / weight(&placed) / box_volume).min(1.0).powf(1.0 / D as f64);
     let F = points.F.at(p);
     let along = |j: usize| (0..D).map(|i| F[(i, j)] * normal[i]).sum::<f64>() * share * size[j];
-    let reach = (0..D).map(|j| along(j).powi(2)).sum::<f64>().sqrt();
-    let edge = size.min();
-    (reach.clamp(STRETCH[0] * share * edge, STRETCH[1] * share * size.max()), edge)
+    (Vector::from_fn(|j, _| along(j)), size * share, size.min())
 }
 
 /// What the nodes of a point's cell have to say of a place beside it: N_I + grad N_I . (place - x), so that a force

@@ -55,6 +55,8 @@ pub(super) struct RigidPoint<const D: usize> {
     pub stiffness: f64,
     /// -
     pub friction: f64,
+    /// N  part of the normal force that pore water carries
+    pub water: f64,
     /// N  along the outline, from the last step
     pub carried: Along,
     /// what it does
@@ -123,6 +125,11 @@ impl<const D: usize> RigidPoint<D> {
         Vector::<3>::from_fn(|k, _| if k < D { force[k] } else { turns })
     }
 
+    /// m  along the outline of small motions of the body.
+    pub fn along_motion(&self, motions: &Vector<3>) -> Along {
+        self.components(&self.carried_by(motions))
+    }
+
     /// m  from the outline as the step begins.
     pub fn gap_before(&self) -> f64 {
         self.gap + self.approach
@@ -152,9 +159,16 @@ impl<const D: usize> RigidPoint<D> {
             Grip::Stick => (normal, self.held(moved)),
             Grip::Slip(towards) => {
                 let beside = self.transverse(towards, || self.held(moved));
-                (normal, [0, 1].map(|k| towards[k] * self.friction * normal + beside[k]))
+                let limit = self.limit(normal);
+                (normal, [0, 1].map(|k| towards[k] * limit + beside[k]))
             }
         }
+    }
+
+    /// N  the most that friction can be, by Coulomb's law for the effective normal force.
+    fn limit(&self, normal: f64) -> f64 {
+        let effective = if self.water > 0.0 { (normal - self.water).max(0.0) } else { normal };
+        self.friction * effective
     }
 
     /// What friction leaves of what is beside its direction: Newton's linear form of mu N t/|t| about the last t.
@@ -169,7 +183,7 @@ impl<const D: usize> RigidPoint<D> {
 
     /// Takes a status that what has `moved` asks for.
     pub fn take(&mut self, grip: Grip, moved: &Vector<D>) {
-        let (held, limit) = (size(self.held(moved)), -self.friction * self.stiffness * self.gap_after(moved));
+        let (held, limit) = (size(self.held(moved)), self.limit(-self.stiffness * self.gap_after(moved)));
         let turns = D > 2 && matches!(grip, Grip::Slip(_)) && held > 0.0;
         self.grip = grip;
         self.transverse_share = if turns { (limit.max(0.0) / held).min(1.0) } else { 0.0 };
@@ -206,16 +220,27 @@ impl<const D: usize> RigidPoint<D> {
         let normal = -self.stiffness * self.normal.dot(moved);
         match self.grip {
             Grip::Open => Vector::zeros(),
-            Grip::Stick => {
-                let held = self.components(moved).map(|along| self.stiffness * along);
-                self.normal * normal - self.vector(held)
-            }
+            Grip::Stick => self.rate_if_held(moved),
             Grip::Slip(towards) => {
                 let held = || self.components(moved).map(|along| -self.stiffness * along);
                 let beside = self.vector(self.transverse(towards, held));
                 let rubbed = if whole { self.friction * normal } else { 0.0 };
                 self.normal * normal + self.vector(towards.map(|part| part * rubbed)) + beside
             }
+        }
+    }
+
+    /// N  the same of a point that sticks.
+    fn rate_if_held(&self, moved: &Vector<D>) -> Vector<D> {
+        let held = self.components(moved).map(|along| self.stiffness * along);
+        -self.normal * (self.stiffness * self.normal.dot(moved)) - self.vector(held)
+    }
+
+    /// N  the same with friction that holds whatever touches.
+    pub fn rate_if_stuck(&self, moved: &Vector<D>) -> Vector<D> {
+        match self.grip {
+            Grip::Slip(_) if self.friction > 0.0 => self.rate_if_held(moved),
+            _ => self.rate(moved, false),
         }
     }
 
@@ -229,7 +254,7 @@ impl<const D: usize> RigidPoint<D> {
 
     /// The status that a displacement asks for that closes the gap.
     pub fn met(&self, moved: &Vector<D>) -> Grip {
-        let (held, limit) = (self.held(moved), -self.friction * self.stiffness * self.gap_after(moved));
+        let (held, limit) = (self.held(moved), self.limit(-self.stiffness * self.gap_after(moved)));
         match self.friction {
             0.0 => Grip::Slip([0.0; 2]),
             _ if size(held) > limit.max(0.0) => Grip::Slip(held.map(|part| part / size(held))),
@@ -247,7 +272,7 @@ impl<const D: usize> RigidPoint<D> {
             return if depth > length { (self.met(moved), soil * self.stiffness * depth) } else { (Grip::Open, 0.0) };
         }
         let (normal, along) = self.pushed(moved);
-        let limit = self.friction * normal.max(0.0);
+        let limit = self.limit(normal.max(0.0));
         match self.grip {
             _ if normal < -force => (Grip::Open, -normal),
             Grip::Stick if size(along) > limit + force => {

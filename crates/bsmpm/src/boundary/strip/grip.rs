@@ -24,6 +24,8 @@ pub struct StripContact<const D: usize> {
 pub(super) struct ContactState<const D: usize> {
     contact: StripContact<D>,
     pub status: Status<D>,
+    /// Pa  what pore water carries of the pressure
+    pub water: f64,
     transverse_share: f64, // of a tangential trial, the part that friction leaves of what is beside its direction; in space
     open_before: bool,     // at the start of the step
 }
@@ -45,7 +47,13 @@ impl<const D: usize> ContactState<D> {
     pub fn of(contact: StripContact<D>, carried: &Vector<D>) -> Self {
         let open_before = contact.is_open(carried);
         let closed = if contact.law.friction == 0.0 { Status::Slip(Vector::zeros()) } else { Status::Stick };
-        Self { contact, status: if open_before { Status::Open } else { closed }, transverse_share: 0.0, open_before }
+        Self {
+            contact,
+            status: if open_before { Status::Open } else { closed },
+            transverse_share: 0.0,
+            open_before,
+            water: 0.0,
+        }
     }
 
     /// Pa  on the body at the start of the step.
@@ -60,7 +68,7 @@ impl<const D: usize> ContactState<D> {
 
     /// Pa  on the body, of an elastic law's `trial`.
     pub fn traction(&self, trial: &Vector<D>) -> Vector<D> {
-        self.part(trial) + self.rubbing(trial)
+        self.part(trial) + self.friction(trial)
     }
 
     /// The part of a traction, or of a displacement by what stiffness it has, that acts in the direction of itself.
@@ -76,7 +84,21 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// The friction of a normal part.
+    /// Pa  the most that friction can be at a pressure, by Coulomb's law for the effective one.
+    fn limit(&self, pressure: f64) -> f64 {
+        let effective = if self.water > 0.0 { (pressure - self.water).max(0.0) } else { pressure };
+        self.contact.law.friction * effective
+    }
+
+    /// Pa  friction under an elastic law's `trial`.
+    fn friction(&self, trial: &Vector<D>) -> Vector<D> {
+        match self.status {
+            Status::Slip(along) if self.water > 0.0 => along * self.limit(self.contact.inward.dot(trial)),
+            _ => self.rubbing(trial),
+        }
+    }
+
+    /// How friction grows with a normal part.
     pub fn rubbing(&self, vector: &Vector<D>) -> Vector<D> {
         match self.status {
             Status::Slip(along) => along * (self.contact.law.friction * self.contact.inward.dot(vector)),
@@ -156,9 +178,10 @@ impl<const D: usize> ContactState<D> {
     /// its direction mu p/|t|.
     fn take(&mut self, status: Status<D>, trial: &Vector<D>) {
         self.status = status;
-        let (normal, shear) = (self.contact.inward.dot(trial).max(0.0), (trial - self.normal(trial)).norm());
+        let limit = self.limit(self.contact.inward.dot(trial).max(0.0));
+        let shear = (trial - self.normal(trial)).norm();
         let turns = D > 2 && matches!(status, Status::Slip(_)) && shear > 0.0;
-        self.transverse_share = if turns { (self.contact.law.friction * normal / shear).min(1.0) } else { 0.0 };
+        self.transverse_share = if turns { (limit / shear).min(1.0) } else { 0.0 };
     }
 
     /// The status that a `trial` asks for, where it contradicts the present one by more than `doubt`, Pa.
@@ -171,7 +194,7 @@ impl<const D: usize> ContactState<D> {
             Status::Stick => self.met(trial, pressure, doubt),
             Status::Slip(along) if along.norm_squared() > 0.0 => {
                 let shear = trial - self.normal(trial);
-                let limit = self.contact.law.friction * pressure;
+                let limit = self.limit(pressure);
                 let rubbed = self.traction(trial) - self.normal(trial);
                 let is_off = |now: Vector<D>| (rubbed - now * limit).norm() > TURNED * doubt;
                 match shear.dot(&along) {
@@ -191,7 +214,7 @@ impl<const D: usize> ContactState<D> {
     /// On the material, under a `trial` of that pressure.
     fn met(&self, trial: &Vector<D>, pressure: f64, doubt: f64) -> Status<D> {
         let (friction, shear) = (self.contact.law.friction, trial - self.normal(trial));
-        let limit = friction * pressure.max(0.0);
+        let limit = self.limit(pressure.max(0.0));
         match shear.try_normalize(0.0) {
             _ if friction == 0.0 || pressure < -doubt => Status::Slip(Vector::zeros()),
             Some(along) if shear.norm() > limit + doubt => Status::Slip(along),

@@ -26,6 +26,7 @@ pub(super) struct StripSums {
 pub(super) struct StripPoint<const D: usize> {
     pub(super) strip: usize,
     pub(super) point: usize,
+    pub(super) place: Vector<D>, // m  of the material at it, from the grid's lower corner
     pub(super) attachment: [Option<Attachment>; D], // per component: where a support holds all of its nodes, the strip does not
     pub(super) area: f64,
     pub(super) penalty: f64,

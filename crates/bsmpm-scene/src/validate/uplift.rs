@@ -1,0 +1,80 @@
+//! Rigid bodies below the water table: still water does not press on them.
+
+use crate::case::{Case, Rigid, RigidShape, Water};
+use crate::report::Report;
+use crate::words::Geometry;
+use bsmpm::boundary::rigid::Outline;
+use bsmpm::tensor::Vector;
+use std::f64::consts::TAU;
+
+/// Corners of the polygon that stands for a circle: its area is 0.2 % less.
+const CORNERS: usize = 64;
+
+/// Warns of rigid bodies, with the buoyancy that they lack where it is known.
+pub(super) fn warn(case: &Case, water: &Water, report: &mut Report<'_>) {
+    if case.rigid.is_empty() {
+        return;
+    }
+    let heights = water.table.levels().into_iter().flatten().map(|row| row.1);
+    let level = heights.fold(f64::NEG_INFINITY, f64::max);
+    let lacking = |rigid: &Rigid| {
+        let area = if case.geometry == Geometry::PlaneStrain { wet_area(&rigid.shape, level) } else { 0.0 };
+        (area > 0.0).then(|| format!("`{}` {:.4} kN/m", rigid.name, water.unit_weight * area * 1e-3))
+    };
+    let lacking: Vec<String> = case.rigid.iter().filter_map(lacking).collect();
+    let sizes = match lacking.is_empty() {
+        true => String::new(),
+        false => format!(" At the start the buoyancy of {} is missing.", lacking.join(", ")),
+    };
+    report.warn(format!(
+        "water: it does not press on rigid bodies: their forces are those besides the water's.{sizes} Reduce rigid.mass or \
+         rigid.force by it, and add the water's thrust to the histories."
+    ));
+}
+
+/// m2  area of a shape in the plane below a level, m.
+fn wet_area(shape: &RigidShape, level: f64) -> f64 {
+    let corners: Vec<[f64; 2]> = match shape {
+        RigidShape::Polygon(corners) => corners.clone(),
+        RigidShape::Circle { center, radius } => {
+            let angle = |k: usize| TAU * k as f64 / CORNERS as f64;
+            let at = |k: usize| [center[0] + radius * angle(k).cos(), center[1] + radius * angle(k).sin()];
+            (0..CORNERS).map(at).collect()
+        }
+        RigidShape::InSpace(_) => return 0.0,
+    };
+    let below = below(&corners, level);
+    let polygon = Outline::Polygon(below.into_iter().map(Vector::from).collect());
+    polygon.sizes().area.abs()
+}
+
+/// Corners of the part of a polygon below a level.
+fn below(corners: &[[f64; 2]], level: f64) -> Vec<[f64; 2]> {
+    let mut kept = Vec::new();
+    for (number, &from) in corners.iter().enumerate() {
+        let to = corners[(number + 1) % corners.len()];
+        if from[1] <= level {
+            kept.push(from);
+        }
+        if (from[1] <= level) != (to[1] <= level) {
+            let share = (level - from[1]) / (to[1] - from[1]);
+            kept.push([from[0] + share * (to[0] - from[0]), level]);
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_wet_area_is_that_of_the_part_below_the_level() {
+        let block = RigidShape::Polygon(vec![[1.0, 0.0], [3.0, 0.0], [3.0, 2.0], [1.0, 2.0]]);
+        for (level, area) in [(-1.0, 0.0), (0.5, 1.0), (5.0, 4.0)] {
+            assert!((wet_area(&block, level) - area).abs() < 1e-12, "{level}");
+        }
+        let half = wet_area(&RigidShape::Circle { center: [0.0, 1.0], radius: 2.0 }, 1.0);
+        assert!((half / TAU - 1.0).abs() < 3e-3, "{half}");
+    }
+}

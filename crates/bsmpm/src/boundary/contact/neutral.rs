@@ -1,0 +1,68 @@
+//! Where all nodes of a face slide, and not all in one direction, some between them must stick.
+//!
+//! A heap that spreads on a face which alone holds it along itself slides outwards on both sides of it. Between the two
+//! a node sticks, whose friction is what balance asks for: with all nodes sliding the heap is free to move along the
+//! face, and the stiffness is singular. Where that node would need more than Coulomb's limit, it slides after the next
+//! correction, and its neighbour sticks.
+
+use super::Contacts;
+use crate::boundary::coulomb::Status;
+use crate::grid::Grid;
+use crate::parallel::Halo;
+use std::collections::BTreeMap;
+
+impl<const D: usize> Contacts<D> {
+    /// Lets nodes stick at which the direction of sliding changes along a face, those that slide least under `u` (m),
+    /// or have done so for longer; how many over all ranks. None where some node sticks already. A
+    /// reduction, and an exchange with the neighbours where all that has friction slides.
+    pub fn hold_neutral(&mut self, grid: &Grid<D>, u: &[f64], halo: &dyn Halo) -> usize {
+        let mut sticking = [f64::from(u8::from(self.nodes.iter().any(|at| at.status == Status::Stick)))];
+        halo.maximum(&mut sticking);
+        if sticking[0] > 0.0 {
+            return 0;
+        }
+        let mut marks = vec![0.0; grid.nodes()];
+        for number in self.neutral(grid, u) {
+            marks[self.nodes[number].node] = 1.0;
+        }
+        halo.max(&mut marks, 1);
+        let owned = halo.owned();
+        let mut held = [0.0];
+        for at in self.nodes.iter_mut().filter(|at| marks[at.node] > 0.0 && is_rubbed(at.status)) {
+            (at.status, at.is_neutral) = (Status::Stick, true);
+            held[0] += f64::from(u8::from(owned.contains(at.node)));
+        }
+        halo.reduce(&mut held);
+        held[0] as usize
+    }
+
+    /// Numbers of nodes that slide less than a neighbour which slides in the opposite direction.
+    fn neutral(&self, grid: &Grid<D>, u: &[f64]) -> Vec<usize> {
+        let numbered = self.nodes.iter().enumerate().map(|(number, at)| ((at.support, at.node), number));
+        let numbers: BTreeMap<(usize, usize), usize> = numbered.collect();
+        let direction = |number: usize, axis: usize| match self.nodes[number].status {
+            Status::Slip(direction) => direction[axis],
+            Status::Open | Status::Stick => 0.0,
+        };
+        // What has just come to slide would stick at its limit again.
+        let order = |number: usize| (self.released[number], self.nodes[number].slip(u).norm());
+        let mut found = Vec::new();
+        for (number, at) in self.nodes.iter().enumerate() {
+            for axis in (0..D).filter(|axis| *axis != at.axis) {
+                let mut beyond = grid.node_at(at.node);
+                beyond[axis] += 1;
+                let next = grid.node_index(&beyond).and_then(|node| numbers.get(&(at.support, node)));
+                let Some(&next) = next.filter(|next| direction(number, axis) * direction(**next, axis) < 0.0) else {
+                    continue;
+                };
+                found.push(if order(next) < order(number) { next } else { number });
+            }
+        }
+        found
+    }
+}
+
+/// Whether a node slides against friction.
+fn is_rubbed<const D: usize>(status: Status<D>) -> bool {
+    matches!(status, Status::Slip(direction) if direction.norm_squared() > 0.0)
+}

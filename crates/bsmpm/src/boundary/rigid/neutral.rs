@@ -1,0 +1,102 @@
+//! Where all points under a free body slide, and not all in one direction, one of them must stick.
+//!
+//! Ground that spreads under a block slides outwards on both sides of it. Between the two a point sticks, whose
+//! friction is what balance asks for: with all points sliding nothing resists a motion of the block along its base.
+//! Without inertia the point that slides least is taken to stick. Where it would need more than Coulomb's limit, the next
+//! correction lets it slide and takes the next one, so that the neutral point moves along the base. If all points slide
+//! in one direction, nothing holds the body.
+
+use super::body::MOTIONS;
+use super::point::{Grip, RigidPoint};
+use super::{BodyInStep, RigidContacts};
+use crate::parallel::Halo;
+use crate::tensor::Vector;
+use nalgebra::Matrix3;
+
+/// Stiffness of a motion over that with all points stuck, below which it is loose: a base that is inclined by its root
+/// to the motion.
+const LOOSE: f64 = 1e-6;
+/// Part by which slips are taken to be larger that go against the motion, so that of two equal ones one point sticks.
+const AGAINST: f64 = 0.01;
+
+/// What the points that slide are for a loose motion.
+#[derive(Clone, Copy)]
+struct Sliding {
+    towards: f64, // of the friction along the motion: 1 or -1
+    slip: f64,    // m  of the motion that it takes to undo the slip, by which the neutral point is chosen
+}
+
+impl<const D: usize> RigidContacts<D> {
+    /// Takes points to stick, of each body with a loose motion, about what has `moved`, m, of every point; those that
+    /// have just come to slide are left out. How many. Two reductions for each motion that is loose, and one.
+    pub(super) fn hold_neutral(&mut self, moved: &[Vector<D>], released: &[bool], halo: &dyn Halo) -> usize {
+        if self.dt > 0.0 || !self.is_coupled() || !self.rubs() {
+            return 0;
+        }
+        let mut held = 0;
+        for _ in 0..MOTIONS {
+            let loose = self.loose_motions(halo);
+            if loose.iter().all(Option::is_none) {
+                break;
+            }
+            let sliding: Vec<Option<Sliding>> =
+                self.points.iter().zip(moved).map(|(p, m)| sliding(p, m, &loose)).collect();
+            let mut extremes = vec![f64::NEG_INFINITY; 3 * self.bodies.len()]; // towards, against, - least slip
+            for ((point, sliding), released) in self.points.iter().zip(&sliding).zip(released) {
+                let Some(Sliding { towards, slip }) = *sliding else { continue };
+                let least = if *released { f64::NEG_INFINITY } else { -slip };
+                let of_body = extremes[3 * point.body..].iter_mut();
+                of_body.zip([towards, -towards, least]).for_each(|(most, value)| *most = most.max(value));
+            }
+            halo.maximum(&mut extremes);
+            let mut count = [0.0];
+            for (point, sliding) in self.points.iter_mut().zip(&sliding) {
+                let [towards, against, least] = [0, 1, 2].map(|k| extremes[3 * point.body + k]);
+                let is_neutral = |slip: f64| slip <= -least;
+                if towards > 0.0 && against > 0.0 && sliding.is_some_and(|sliding| is_neutral(sliding.slip)) {
+                    point.grip = Grip::Stick;
+                    count[0] += 1.0;
+                }
+            }
+            halo.reduce(&mut count);
+            held += count[0] as usize;
+            if count[0] == 0.0 {
+                break;
+            }
+        }
+        held
+    }
+
+    /// Of every body the motion that resists least, if it is loose.
+    fn loose_motions(&self, halo: &dyn Halo) -> Vec<Option<Vector<3>>> {
+        let (stuck, now) = (self.stiffness_by(RigidPoint::rate_if_stuck, halo), self.stiffness(false, halo));
+        let of = |((at, stuck), now): ((&BodyInStep<D>, &Matrix3<f64>), &Matrix3<f64>)| loosest(at, stuck, now);
+        self.bodies.iter().zip(&stuck).zip(&now).map(of).collect()
+    }
+}
+
+/// The motion of least stiffness `now` over that with all points `stuck`, if it is loose.
+fn loosest<const D: usize>(at: &BodyInStep<D>, stuck: &Matrix3<f64>, now: &Matrix3<f64>) -> Option<Vector<3>> {
+    if !at.body.is_free() {
+        return None;
+    }
+    let free = |k: usize| if at.body.free[k] { 1.0 } else { 0.0 };
+    let of_free = |matrix: &Matrix3<f64>, k: usize, l: usize| matrix[(k, l)] * free(k) * free(l);
+    let whole = Matrix3::from_fn(|k, l| of_free(stuck, k, l) + if k == l { 1.0 - free(k) } else { 0.0 });
+    let part = Matrix3::from_fn(|k, l| of_free(now, k, l) + if k == l { 1.0 - free(k) } else { 0.0 });
+    let inverse = whole.cholesky()?.l().try_inverse()?;
+    let eigen = (inverse * part * inverse.transpose()).symmetric_eigen();
+    let least = eigen.eigenvalues.imin();
+    (eigen.eigenvalues[least] < LOOSE).then(|| inverse.transpose() * eigen.eigenvectors.column(least))
+}
+
+/// Of a point that slides along the loose motion of its body.
+fn sliding<const D: usize>(point: &RigidPoint<D>, moved: &Vector<D>, loose: &[Option<Vector<3>>]) -> Option<Sliding> {
+    let motion = loose[point.body]?;
+    let Grip::Slip(towards) = point.grip else { return None };
+    let along = point.along_motion(&motion);
+    let friction = towards[0] * along[0] + towards[1] * along[1];
+    let size = along[0].hypot(along[1]);
+    let weighed = if friction < 0.0 { 1.0 + AGAINST } else { 1.0 };
+    (friction != 0.0).then(|| Sliding { towards: friction.signum(), slip: weighed * point.slipped(moved) / size })
+}
