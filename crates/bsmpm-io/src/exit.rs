@@ -33,8 +33,12 @@ pub const NO_CONVERGENCE: u8 = 80;
 /// the last converged state is saved.
 pub const LEFT: u8 = 81;
 
+/// The case's end was reached and its checks passed, but an indicator of the run is beyond its limit, which the case does
+/// not accept: the answer is likely to be wrong by 10 % or more.
+pub const INDICATOR: u8 = 82;
+
 /// All of them.
-pub const ALL: [u8; 15] = [
+pub const ALL: [u8; 16] = [
     DONE,
     USAGE,
     CASE,
@@ -50,6 +54,7 @@ pub const ALL: [u8; 15] = [
     WRONG_LAUNCH,
     NO_CONVERGENCE,
     LEFT,
+    INDICATOR,
 ];
 
 #[cfg(test)]

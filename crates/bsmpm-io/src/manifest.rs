@@ -231,7 +231,7 @@ impl Manifest {
         let indicators = self
             .indicators
             .iter()
-            .flat_map(|(name, indicator)| indicator.numbers().map(|value| (format!("indicators.{name}"), value)));
+            .flat_map(|(name, indicator)| indicator.numbers().map(move |value| (format!("indicators.{name}"), value)));
         let limit_loads = self.limit_loads.iter().flat_map(|load| [load.value, load.change]);
         let limit_loads = limit_loads.map(|value| ("limit_loads".to_owned(), value));
         let run = timers.chain(times).chain(grid).chain(checks).chain(failure).chain(cpu).chain(balance);

@@ -4,6 +4,8 @@
 #![doc = include_str!("indicators.md")]
 
 mod advice;
+mod force_noise;
+mod limits;
 
 use crate::record::Recorder;
 use crate::setup;
@@ -20,6 +22,7 @@ use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::water::observed::PoreWater;
 use bsmpm_io::manifest::{Indicator, Summary};
+use bsmpm_io::table::Columns;
 use bsmpm_scene::{Body, Case, GridAxis, NarrowestOpening};
 use std::collections::BTreeMap;
 
@@ -48,6 +51,8 @@ const SLIP: f64 = 0.01;
 /// No number of cells across an opening is too many.
 const MANY_CELLS: f64 = 1e6;
 
+/// Cells by which material may be in a rigid body.
+const PENETRATION: f64 = 0.05;
 /// Part of the largest reaction with which the face of a grid usually pulls.
 const PULL: f64 = 0.05;
 /// Largest cells by which a front usually goes back.
@@ -117,8 +122,8 @@ impl IndicatorState {
         Ok(Self { defect, compression, noise, energy, growth, water, interfaces })
     }
 
-    /// The indicators of a run of a case, by name: of what is in it.
-    pub fn indicators(&self, case: &Case, summary: &Summary) -> BTreeMap<String, Indicator> {
+    /// The indicators of a run of a case, by name: of what is in it, and of its history, if there is one.
+    pub fn indicators(&self, case: &Case, summary: &Summary, history: Option<&Columns>) -> BTreeMap<String, Indicator> {
         let mut all = self.rows();
         let measures = [
             ("force-measure", summary.largest_force_measure),
@@ -147,12 +152,15 @@ impl IndicatorState {
         let smoothed = summary.smoothing_passes.map(|passes| ("smoothing-length", smoothing(case, passes)));
         all.extend(slip.into_iter().chain(smoothed).chain(course(case, summary)));
         all.extend(shifts(self.interfaces, case));
+        all.extend(history.and_then(|history| force_noise::of(case, history)).map(|noise| ("force-noise", noise)));
         all.extend(case.opening.as_ref().map(|narrowest| ("cells-across-opening", across(narrowest))));
         // JSON has no other numbers.
         all.retain(|(_, indicator)| indicator.value.is_finite());
-        let advising =
-            |(name, indicator): (&str, Indicator)| (name.to_owned(), indicator.advising(&advice::of(name, case)));
-        all.into_iter().map(advising).collect()
+        let judged = |(name, indicator): (&str, Indicator)| {
+            let limited = indicator.limited(limits::of(name, case), limits::are_accepted(name, case));
+            (name.to_owned(), limited.advising(&advice::of(name, case)))
+        };
+        all.into_iter().map(judged).collect()
     }
 
     /// Those of the state alone.
@@ -231,7 +239,11 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
                        points, mean over the steps";
         ("wall-velocity", Indicator::new(share(excess, all), "-", meaning, [-BESIDE, BESIDE]))
     });
-    [pull, setback, background, load_share, loss, advance, beside].into_iter().flatten()
+    let penetration = summary.deepest_penetration.map(|depth| {
+        let meaning = "the deepest that a material point was in a rigid body after a step, in cells";
+        ("rigid-penetration", Indicator::new(depth, "-", meaning, [0.0, PENETRATION]))
+    });
+    [pull, setback, background, load_share, loss, advance, beside, penetration].into_iter().flatten()
 }
 
 /// A time without the last digits, in which it differs from a round number.
@@ -306,11 +318,24 @@ pub fn told(indicators: &BTreeMap<String, Indicator>) -> (String, Vec<String>) {
     let unit =
         |indicator: &Indicator| if indicator.unit == "-" { String::new() } else { format!(" {}", indicator.unit) };
     let all = indicators.iter().map(|(name, found)| format!("{name} {}{}", number(found.value), unit(found)));
-    let unusual = indicators.iter().filter(|(_, found)| found.unusual).map(|(name, found)| {
+    let unusual = indicators.iter().filter(|(_, found)| found.unusual || found.failed).map(|(name, found)| {
         let [least, most] = found.usual.map(number);
         let advice = if found.advice.is_empty() { String::new() } else { format!("; {}", found.advice) };
-        let value = number(found.value);
-        format!("{name} is {value}{}, usually {least} to {most}: {}{advice}", unit(found), found.meaning)
+        let (value, unit) = (number(found.value), unit(found));
+        let verdict = verdict(name, found);
+        format!("{verdict}: {name} is {value}{unit}, usually {least} to {most}: {}{advice}", found.meaning)
     });
     (format!("indicators: {}", all.collect::<Vec<_>>().join(", ")), unusual.collect())
+}
+
+/// How a value outside the usual range is judged.
+fn verdict(name: &str, found: &Indicator) -> String {
+    match found.limits.filter(|_| found.failed) {
+        None => "unusual".to_owned(),
+        Some(_) if found.accepted => "beyond its limit, which output.accept accepts".to_owned(),
+        Some([_, most]) => format!(
+            "failed (beyond its limit of {most}, the answer is likely to be wrong by 10 % or more; to accept it, \
+             output.accept = [\"{name}\"])"
+        ),
+    }
 }

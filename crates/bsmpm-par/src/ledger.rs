@@ -251,6 +251,8 @@ impl Ledger {
         }
         summary.largest_advance =
             Some(summary.largest_advance.map_or(report.advance, |so_far| so_far.max(report.advance)));
+        let penetrations = report.rigid.iter().map(|rigid| rigid.penetration);
+        summary.deepest_penetration = penetrations.chain(summary.deepest_penetration).reduce(f64::max);
         summary.settled_steps += u64::from(report.settled);
         summary.last_background = None;
         if let Some([soft, all]) = report.background.map(|works| works.map(|work| work * self.whole)) {

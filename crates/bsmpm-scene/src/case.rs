@@ -27,7 +27,7 @@ pub use water::Water;
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
 use crate::region::Region;
-use crate::words::{AnalysisType, Factor, FrameField, Ksp, Pc};
+use crate::words::{AnalysisType, Factor, FrameField, Ksp, LimitedIndicator, Pc};
 use bsmpm::boundary::Contact;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::material::Material;
@@ -327,6 +327,8 @@ pub struct Output {
     pub projected_pressure: bool,
     /// What frames show besides.
     pub fields: Vec<FrameField>,
+    /// Indicators that may be beyond their limits.
+    pub accept: Vec<LimitedIndicator>,
     /// When restart files are written.
     pub checkpoint: Checkpoint,
 }

@@ -13,7 +13,7 @@ mod scene;
 mod solver;
 
 pub use measurement::Measurement;
-pub use output::{FrameField, ProfileQuantity};
+pub use output::{FrameField, LimitedIndicator, ProfileQuantity};
 pub(crate) use retired::{BACKGROUND_CELLS, BACKGROUND_KIND};
 pub use scene::{
     Accuracy, AnalysisType, Axis, Base, C0Lines, Components, Drainage, Failure, Format, Geometry, Order, Path, Purpose,

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::time::UNIX_EPOCH;
 
 use bsmpm_io::atomic;
-use bsmpm_io::exit::{CHECK, DONE, LEFT, NO_CONVERGENCE, STOPPED};
+use bsmpm_io::exit::{CHECK, DONE, INDICATOR, LEFT, NO_CONVERGENCE, STOPPED};
 use bsmpm_io::lock::{Lock, Unseen};
 use bsmpm_io::manifest::{MANIFEST, Manifest};
 
@@ -143,7 +143,8 @@ impl LaunchTask<'_> {
     /// made again.
     pub fn is_there(&self, is_same: impl Fn(&Manifest) -> bool) -> bool {
         self.before().is_some_and(|manifest| {
-            let is_whole = manifest.exit_code.is_some_and(|code| [DONE, CHECK, NO_CONVERGENCE, LEFT].contains(&code));
+            let is_whole =
+                manifest.exit_code.is_some_and(|code| [DONE, CHECK, INDICATOR, NO_CONVERGENCE, LEFT].contains(&code));
             is_whole && is_same(&manifest)
         })
     }

@@ -15,6 +15,15 @@ pub struct Indicator {
     pub usual: [f64; 2],
     /// Whether the value lies outside.
     pub unusual: bool,
+    /// Least and largest value up to which the answer is likely to be right within 10 %; none where no measurement tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<[f64; 2]>,
+    /// Whether the value lies beyond the limits.
+    #[serde(default)]
+    pub failed: bool,
+    /// Whether the case accepts that.
+    #[serde(default)]
+    pub accepted: bool,
     /// What a value outside means, and what to do then.
     #[serde(default)]
     pub advice: String,
@@ -24,7 +33,29 @@ impl Indicator {
     /// A value, judged by its usual range.
     pub fn new(value: f64, unit: &str, meaning: &str, usual: [f64; 2]) -> Self {
         let unusual = !(usual[0]..=usual[1]).contains(&value);
-        Self { value, unit: unit.to_owned(), meaning: meaning.to_owned(), usual, unusual, advice: String::new() }
+        Self {
+            value,
+            unit: unit.to_owned(),
+            meaning: meaning.to_owned(),
+            usual,
+            unusual,
+            limits: None,
+            failed: false,
+            accepted: false,
+            advice: String::new(),
+        }
+    }
+
+    /// The same with limits, and whether the case accepts a value beyond them.
+    #[must_use]
+    pub fn limited(self, limits: Option<[f64; 2]>, accepted: bool) -> Self {
+        let failed = limits.is_some_and(|[least, most]| !(least..=most).contains(&self.value));
+        Self { limits, failed, accepted: failed && accepted, ..self }
+    }
+
+    /// Whether it ends the run with a code of its own.
+    pub fn ends_run(&self) -> bool {
+        self.failed && !self.accepted
     }
 
     /// The same with what to do where it is unusual.
@@ -33,7 +64,7 @@ impl Indicator {
         Self { advice: advice.to_owned(), ..self }
     }
 
-    pub(super) fn numbers(&self) -> [f64; 3] {
-        [self.value, self.usual[0], self.usual[1]]
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
+        [self.value].into_iter().chain(self.usual).chain(self.limits.into_iter().flatten())
     }
 }

@@ -149,6 +149,9 @@ pub struct Summary {
     /// m  the farthest that a point moved in a step; none before the first one.
     #[serde(default)]
     pub largest_advance: Option<f64>,
+    /// The deepest that a material point was in a rigid body after a step, in cells; none without rigid bodies.
+    #[serde(default)]
+    pub deepest_penetration: Option<f64>,
     /// Largest slip of any rigid strip in a step, over its motion in that step; none without strips that move.
     #[serde(default)]
     pub largest_slip: Option<f64>,

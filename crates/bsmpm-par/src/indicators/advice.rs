@@ -33,6 +33,17 @@ pub(super) fn of(name: &str, case: &Case) -> String {
                 MassMatrix::Consistent => "Use smaller cells, or a face with { friction = ... }.",
             }
         ),
+        "force-noise" => {
+            "the force jumps from step to step, so that a single value is uncertain by about this part. Use \
+                          smaller cells at what moves, or the mean over several steps."
+                .to_owned()
+        }
+        "rigid-penetration" => {
+            "the body was pushed over material points, or its force is beyond what its penalty is made \
+                                for: its position is off by this part of a cell. Increase analysis.steps, or reduce \
+                                analysis.dt."
+                .to_owned()
+        }
         _ => constant(name, case).to_owned(),
     }
 }

@@ -42,14 +42,14 @@ impl There {
     }
 }
 
-/// What there is to go on with. A run whose checks failed came to its end, too: it would fail them again.
+/// What there is to go on with. A run whose checks or indicators failed came to its end, too: they would fail again.
 pub(super) fn look(run: Option<&Manifest>, case: &Case) -> Result<There, Refusal> {
     let Some(run) = run else { return Ok(There::Nothing) };
     let changed = admissible("the run in the output directory", run, case)?;
     let further = changed.iter().any(|change| change.key == "analysis.end" && is_later(change));
     let ended = match (run.status, run.exit_code) {
         (Status::Finished, _) => Some(exit::DONE),
-        (Status::Failed, Some(exit::CHECK)) => Some(exit::CHECK),
+        (Status::Failed, Some(code @ (exit::CHECK | exit::INDICATOR))) => Some(code),
         _ => None,
     };
     Ok(ended.filter(|_| !further).map_or(There::Unfinished, There::Complete))

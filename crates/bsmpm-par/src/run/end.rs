@@ -9,7 +9,7 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
 use bsmpm_io::directory::HISTORY;
 use bsmpm_io::exit;
-use bsmpm_io::manifest::{Communication, SolverNames, Status};
+use bsmpm_io::manifest::{Communication, Indicator, SolverNames, Status};
 use bsmpm_io::table;
 use bsmpm_ranks::linear::Tallies;
 use bsmpm_ranks::simulation::Simulation;
@@ -36,7 +36,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// Ends a run that came to the end of the case.
     pub(super) fn finish(self) -> u8 {
-        let mut failed = [0.0];
+        // Its checks, and its indicators.
+        let mut failed = [0.0; 2];
         let mut run = self;
         run.tell_vacant();
         if let Some(ledger) = &mut run.ledger {
@@ -50,10 +51,15 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 run.log.failure(&format!("check failed: {} = {value}, allowed: {least} to {most}", check.quantity));
             }
         }
+        run.judge_itself();
+        if let Some(ledger) = &mut run.ledger {
+            failed[1] = f64::from(ledger.manifest().indicators.values().any(Indicator::ends_run));
+        }
         run.simulation.halo.maximum(&mut failed);
-        let (status, code) = match failed[0] > 0.0 {
-            true => (Status::Failed, exit::CHECK),
-            false => (Status::Finished, exit::DONE),
+        let (status, code) = match failed.map(|failed| failed > 0.0) {
+            [true, _] => (Status::Failed, exit::CHECK),
+            [false, true] => (Status::Failed, exit::INDICATOR),
+            [false, false] => (Status::Finished, exit::DONE),
         };
         if run.case.output.checkpoint.at_end { run.end(status, code) } else { run.close(status, code) }
     }
@@ -91,8 +97,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         match IndicatorState::of((model, points, time), (&self.recorder, budget), &**halo) {
             Ok(state) => {
                 if let Some(ledger) = &mut self.ledger {
+                    let history = table::read(&ledger.path().join(HISTORY)).ok();
                     let manifest = ledger.manifest();
-                    manifest.indicators = state.indicators(&self.case, &manifest.summary);
+                    manifest.indicators = state.indicators(&self.case, &manifest.summary, history.as_ref());
                 }
             }
             Err(error) => launch::end(&self.universe.world(), exit::BUG, &error),
@@ -156,7 +163,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if judged {
             self.log.line("indicators", &all);
         }
-        unusual.iter().for_each(|line| self.log.line("indicator", &format!("unusual: {line}")));
+        unusual.iter().for_each(|line| self.log.line("indicator", line));
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, loads, one_of};
-use crate::words::{Format, FrameField, Measurement, ProfileQuantity, Side, Word};
+use crate::words::{Format, FrameField, LimitedIndicator, Measurement, ProfileQuantity, Side, Word};
 use std::ops::Bound::{Excluded, Included};
 
 pub(super) static OUTPUT: Table = Table {
@@ -22,6 +22,12 @@ pub(super) static OUTPUT: Table = Table {
             "whether frames have the pressure projected onto splines of the order below, too",
         ),
         key("fields", Choices(FrameField::WORDS), Optional, "what frames show besides what they always do"),
+        key(
+            "accept",
+            Choices(LimitedIndicator::WORDS),
+            Optional,
+            "indicators of the run that may be beyond their limits; others end it with exit code 82",
+        ),
         key(
             "checkpoint",
             Kind::Table(&CHECKPOINT),

@@ -39,6 +39,7 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
         residuals: output.flag("residuals")?,
         projected_pressure: output.flag("projected_pressure")?,
         fields: if output.gives("fields") { output.choices("fields")? } else { Vec::new() },
+        accept: if output.gives("accept") { output.choices("accept")? } else { Vec::new() },
         checkpoint,
     })
 }
@@ -51,6 +52,7 @@ fn nothing() -> Output {
         residuals: false,
         projected_pressure: false,
         fields: Vec::new(),
+        accept: Vec::new(),
         checkpoint: Checkpoint::default(),
     }
 }

@@ -1,6 +1,34 @@
 //! Words of what frames and profiles show of the points.
 
 choice! {
+    /// An indicator that ends a run with an exit code of its own where it is beyond its limit, unless the case accepts it.
+    pub enum LimitedIndicator {
+        /// Work done on the soft background.
+        BackgroundWork = "background-work",
+        /// Force of the soft background under dead load.
+        BackgroundLoadShare = "background-load-share",
+        /// Energy that the algorithm lost.
+        EnergyLoss = "energy-loss",
+        /// Noise of a history of a force.
+        ForceNoise = "force-noise",
+        /// Distance by which an interface has left its grid line.
+        InterfaceShift = "interface-shift",
+        /// The same of soils of unlike permeability.
+        PermeabilityShift = "permeability-shift",
+        /// Depth of material in a rigid body.
+        RigidPenetration = "rigid-penetration",
+        /// Slip of a strip.
+        Slip = "slip",
+        /// Distance that a point moved in a step of dynamics.
+        StepAdvance = "step-advance",
+        /// Velocity of points next to fixed faces.
+        WallVelocity = "wall-velocity",
+        /// Water that was lost.
+        WaterBalance = "water-balance",
+    }
+}
+
+choice! {
     /// A field that frames have on request.
     pub enum FrameField {
         /// Deviatoric stress (Pa), sqrt(3/2 s:s).

@@ -140,6 +140,7 @@ impl FosReport {
         let mechanism = at(by_kink.first_failed).map(|trial| trial.mechanism.clone());
         let of_ground = [
             at(by_kink.last_stable).and_then(loose_points),
+            at(by_kink.last_stable).and_then(untrusted),
             mechanism.as_ref().and_then(|mechanism| pulled_sides(mechanism, plan.sought)),
         ];
         let of_search = notes(curve, kink.as_ref(), &rows, subject);
@@ -265,6 +266,18 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
             trial.factor,
             trial.largest_displacement / trial.displacement,
             trial.largest_displacement
+        )
+    })
+}
+
+/// That the last stable trial has indicators beyond their limits. Those beyond failure have them on purpose.
+fn untrusted(trial: &FosTrial) -> Option<String> {
+    (!trial.failed_indicators.is_empty()).then(|| {
+        format!(
+            "the trial of {} is the last stable one, and has indicators beyond their limits: {}. The result may be wrong by 10 % \
+             or more; its log says what to do",
+            trial.factor,
+            trial.failed_indicators.join(", ")
         )
     })
 }

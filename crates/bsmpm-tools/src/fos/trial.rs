@@ -44,6 +44,8 @@ pub(super) struct FosTrial {
     pub largest_displacement: f64,
     /// m  where the point is that has moved most
     pub farthest: [f64; 3],
+    /// indicators beyond their limits, which would end a run with a code of its own
+    pub failed_indicators: Vec<String>,
     /// where the ground moves by more than half of the displacement that decides
     #[serde(skip)]
     pub mechanism: Mechanism,
@@ -251,6 +253,9 @@ impl Trials<'_> {
         if let Some(name) = loose {
             return Err(Error::LooseBody { value: self.subject.sought.value(), trial: factor, name });
         }
+        let indicators = outcome.manifest.iter().flat_map(|manifest| &manifest.indicators);
+        let failed = indicators.filter(|(_, indicator)| indicator.ends_run());
+        let failed_indicators = failed.map(|(name, _)| name.clone()).collect();
         let ground = self.ground(directory, factor)?;
         let frames = RunRecord::read(directory)?.frames(&[whole])?;
         let strains = frames.last().and_then(|frame| FieldName::PlasticStrain.values(frame));
@@ -265,6 +270,7 @@ impl Trials<'_> {
             end,
             displacement,
             comparable: displacement * self.pushed.as_ref().map_or(1.0, |body| body.share(factor)),
+            failed_indicators,
             largest_displacement: elastic + largest * unit,
             farthest,
             mechanism: ground.mechanism(self.subject.counted.dims, &self.subject.sides),

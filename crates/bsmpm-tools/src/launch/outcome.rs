@@ -5,7 +5,9 @@ use std::iter::Sum;
 use std::path::{Path, PathBuf};
 
 use bsmpm_io::directory::HISTORY;
-use bsmpm_io::exit::{self, CHECK, CHECKPOINT, DIRECTORY, DONE, LEFT, MEMORY, NO_CONVERGENCE, STALLED, STOPPED};
+use bsmpm_io::exit::{
+    self, CHECK, CHECKPOINT, DIRECTORY, DONE, INDICATOR, LEFT, MEMORY, NO_CONVERGENCE, STALLED, STOPPED,
+};
 use bsmpm_io::manifest::Manifest;
 use bsmpm_io::table::{self, Columns};
 use serde::Serialize;
@@ -21,7 +23,7 @@ const REFUSED: [u8; 4] = [MEMORY, STALLED, DIRECTORY, CHECKPOINT];
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum RunState {
-    /// It came to the end of the case; its own checks may have failed.
+    /// It came to the end of the case; its own checks may have failed, or its indicators be beyond their limits.
     Done,
     /// It was stopped, by a limit or a signal, and goes on when it is asked for again.
     Stopped,
@@ -104,7 +106,7 @@ impl Outcome {
         let own = refused.or(manifest.as_ref().and_then(|manifest| manifest.exit_code));
         let code = own.or(code).unwrap_or(u8::MAX);
         let state = match code {
-            DONE | CHECK => RunState::Done,
+            DONE | CHECK | INDICATOR => RunState::Done,
             STOPPED => RunState::Stopped,
             NO_CONVERGENCE => RunState::NoConvergence,
             LEFT => RunState::Left,

@@ -53,6 +53,7 @@ mod told;
 mod told_parts;
 mod undrained_stages;
 mod unsaturated_column;
+mod verdicts;
 mod water_and_friction;
 mod water_in_slopes;
 

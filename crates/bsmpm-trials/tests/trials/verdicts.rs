@@ -1,0 +1,47 @@
+//! Indicators beyond their limits end a run with a code of its own, unless the case accepts them.
+
+use crate::support::Scratch;
+use crate::support::cases::slope;
+use crate::support::results::manifest;
+
+/// What makes the surface of the slope creep: `background-load-share` is 0.041 then, and its limit 0.02.
+const CREEPING: [&str; 4] = ["--set", "solver.extension=off", "--set", "analysis.steps=100"];
+const ACCEPTING: [&str; 2] = ["--set", "output.accept=[\"background-load-share\"]"];
+const CHECKED: [&str; 2] = ["--set", "check=[{ quantity = \"max-displacement\", max = 0.005 }]"];
+const NAME: &str = "background-load-share";
+
+#[test]
+fn a_run_beyond_a_limit_ends_with_82_unless_its_case_accepts_that() {
+    let scratch = Scratch::with_case(&slope(0.0));
+    for ranks in [1, 3] {
+        let arguments = [&["case.toml", "-o", "out", "--force"][..], &CREEPING].concat();
+        scratch.mpirun(ranks, &arguments).expect(82).says_once("failed (beyond its limit of 0.02");
+        let found = manifest(&scratch.path("out"));
+        let indicator = &found.indicators[NAME];
+        assert!(indicator.failed && !indicator.accepted && indicator.limits == Some([0.0, 0.02]), "{indicator:?}");
+        assert_eq!(found.exit_code, Some(82));
+    }
+    // It has come to its end, and is not begun again.
+    let again = [&["case.toml", "-o", "out", "--restart", "auto"][..], &CREEPING].concat();
+    scratch.direct(&again).expect(82);
+    assert_eq!(manifest(&scratch.path("out")).summary.steps, 100);
+    let accepting = [&["case.toml", "-o", "accepted"][..], &CREEPING, &ACCEPTING].concat();
+    scratch.direct(&accepting).expect(0).says_once("beyond its limit, which output.accept accepts");
+    let indicator = &manifest(&scratch.path("accepted")).indicators[NAME];
+    assert!(indicator.failed && indicator.accepted, "{indicator:?}");
+}
+
+#[test]
+fn a_check_that_fails_comes_before_an_indicator() {
+    let scratch = Scratch::with_case(&slope(0.0));
+    let both = [&["case.toml", "-o", "both"][..], &CREEPING, &CHECKED].concat();
+    scratch.direct(&both).expect(77).says_once("failed (beyond its limit of 0.02");
+}
+
+#[test]
+fn only_indicators_that_have_a_limit_can_be_accepted() {
+    let scratch = Scratch::with_case(&slope(0.0));
+    let arguments = ["case.toml", "-o", "out", "--set", "output.accept=[\"pressure-noise-plane\"]"];
+    let output = scratch.direct(&arguments).expect(65);
+    assert!(output.said().contains("output.accept") && output.said().contains("wall-velocity"), "{}", output.said());
+}
