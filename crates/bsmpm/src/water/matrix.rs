@@ -9,9 +9,6 @@ use crate::step::problem::Problem;
 use crate::tensor::Vector;
 use crate::water::nodes::Pores;
 
-/// Square of the wave number of the shortest wave, over that of the cells, 1/h^2.
-const SHORTEST_WAVE: f64 = 10.0;
-
 /// Assembles S at the state of the step's start into `solver` and factorises it; pores empty and seepage faces are open
 /// as under the nodal excess pressures `p`, Pa.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
@@ -26,8 +23,6 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     };
     solver.begin(&pores.free);
     let pressures = if flow.retains() { scalars::scalars(&pores.shape, p, |_, value, _| value) } else { Vec::new() };
-    let wave = model.grid.smallest_edge().powi(2) / SHORTEST_WAVE;
-    let inertia = problem.nodes.inertia.as_ref().map_or(0.0, |inertia| wave * inertia.factor());
     let size = pores.shape.offsets().len();
     let mut block = vec![0.0; size * size];
     let mut functions = [(0.0, Vector::zeros()); MOST_FUNCTIONS];
@@ -36,8 +31,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
         for p in patch.points.clone() {
             let Some(wet) = &pores.wet[p] else { continue };
             scalars::functions_of(&pores.shape, p, &mut functions);
-            // With inertia the shortest waves that cells hold, of k^2 = 10/h^2, are stiffer.
-            let stiffness = wet.stiffness + inertia * points.mass[p] / wet.volume;
+            let stiffness = wet.stiffness;
             let mut conductivity = flow.permeability(points.material[p], wet.mean_J).unwrap_or_else(Vector::zeros);
             let mut stored = wet.volume * (wet.content / flow.bulk + wet.J.powi(2) / stiffness);
             let mut tau = wet.tau;
