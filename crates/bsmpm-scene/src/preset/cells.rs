@@ -66,6 +66,7 @@ impl PresetScene<'_> {
         let [lower, upper] = self.bounds()?;
         let side = (upper[0] - lower[0]).min(upper[1] - lower[1]);
         let (size, why) = (side / preset.across, format!("{} across the {side} m of the bodies", preset.across));
+        let (size, why) = self.wave_cell(size).unwrap_or((size, why));
         let zones = self.zones(preset, size)?;
         if self.materials().any(|material| material.gives("band_width")) {
             let cell = |zone: &&Zone| zone.ranges[0].cell;

@@ -51,6 +51,7 @@ mod undrained_stages;
 mod unsaturated_column;
 mod water_and_friction;
 mod water_in_slopes;
+mod waves;
 
 #[path = "../support/mod.rs"]
 mod support;
