@@ -13,6 +13,9 @@ pub(crate) const SHARE: f64 = 0.95;
 /// Samples of a run, at least and at most.
 const SAMPLES: [f64; 2] = [256.0, 65536.0];
 
+/// Energy over that of the mean up to which it is round-off.
+const ROUND_OFF: f64 = 1e-20;
+
 /// What the numbers of an input are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum InputKind {
@@ -51,7 +54,8 @@ impl Signal {
             sum += part;
             sum >= SHARE * total
         };
-        let place = energy[1..].iter().position(reached).filter(|_| total > 0.0)?;
+        // What is constant leaves round-off besides its mean.
+        let place = energy[1..].iter().position(reached).filter(|_| total > ROUND_OFF * energy[0])?;
         Some((place + 1) as f64 / (2.0 * end))
     }
 
@@ -138,6 +142,8 @@ mod tests {
         let row = |t: f64| Signal { kind: InputKind::Force, rows: vec![(t, vec![1.0])] };
         assert!(row(1.0).frequency(10.0).unwrap() <= 0.5);
         assert!(row(10.0).frequency(10.0).unwrap() <= 0.2);
+        let steady = Signal { kind: InputKind::Motion, rows: vec![(10.0, vec![0.3])] };
+        assert_eq!(steady.frequency(1.0), None);
         let nothing = Signal { kind: InputKind::Motion, rows: vec![(1.0, vec![0.0])] };
         assert_eq!(nothing.frequency(2.0), None);
     }

@@ -8,14 +8,12 @@ use crate::spectrum::{InputKind, Signal};
 use crate::words::{Side, Support, Word};
 use bsmpm::step::mass::MassMatrix;
 
-/// What the ground's acceleration, loads and motions are given by.
+/// What loads are given by, and which loads. Rigid bodies are left out: in contact material flows more than it swings.
 const FORCES: [&str; 4] = ["amplitude", "stress_path", "pressure_path", "force_path"];
-const LOADED: [&str; 3] = ["traction", "point_load", "rigid"];
-const MOVED: [&str; 2] = ["prescribed", "rigid"];
+const LOADED: [&str; 2] = ["traction", "point_load"];
 
 /// Cells a wavelength at which the speed of a wave is wrong by 2 %, by splines of order 1 to 3. Rounded up from a bar
-/// with two and three points along each axis of a cell and 100 steps a period: the table of
-/// `cases/results/waves.md`, which `scripts/waves` makes.
+/// with two and three points along each axis of a cell and 100 steps a period: the table of `cases/results/waves.md`.
 const LUMPED: [f64; 3] = [18.0, 24.0, 28.0];
 const CONSISTENT: [f64; 3] = [9.0, 8.0, 8.0];
 
@@ -59,7 +57,7 @@ pub(crate) fn inputs(root: &Record) -> Vec<WaveInput> {
         }
     }
     let footing = root.record("footing").map(|record| ("footing", record));
-    for (table, record) in MOVED.into_iter().flat_map(|table| listed(root, table)).chain(footing) {
+    for (table, record) in listed(root, "prescribed").chain(footing) {
         if let Some(rows) = record.rows("path") {
             let axis = if table == "prescribed" { guided(root, record, columns(rows)) } else { None };
             add(record, InputKind::Motion, rows, axis);
