@@ -18,7 +18,7 @@ use crate::water::ties::Ties;
 /// the storage is lumped; see `water.md`.
 const TAU: f64 = 1.0 / 6.0;
 /// Square of the wave number of the shortest wave that cells hold, over 1/h^2.
-const SHORTEST_WAVE: f64 = 10.0;
+pub(super) const SHORTEST_WAVE: f64 = 10.0;
 /// Functions that see less than this part of the largest volume have no pressure.
 const UNSEEN: f64 = 1e-14;
 /// Round-off of the water's balance, of the volume that a function sees.
@@ -47,6 +47,8 @@ pub struct Wet<const D: usize> {
     pub borne: f64,
     /// Pa  what resists the shortest waves that cells hold: lambda + 2 mu, and in dynamics the inertia of a step
     pub stiffness: f64,
+    /// Pa  as much of it as is inertia
+    pub inertia: f64,
     /// m^D m2/Pa  V0 J tau h_i^2 over the stiffness, along the axes
     pub tau: Vector<D>,
     /// Pa/m  gradient of the whole pore pressure at t, and as much of it as goes on
@@ -192,7 +194,8 @@ impl<const D: usize> Wet<D> {
         let soil = flow.soils[material].as_ref()?;
         let law = &model.materials[material];
         let skeleton = law.elastic().oedometric() * law.relative_stiffness(points.height(p));
-        let stiffness = skeleton + inertia * points.mass[p] / points.volume[p];
+        let inertia = inertia * points.mass[p] / points.volume[p];
+        let stiffness = skeleton + inertia;
         let (volume, J, x) = (points.volume[p], points.F.at(p).determinant(), &points.x[p]);
         let pressure = points.pore_pressure.as_ref().map_or_else(|| water.excess_at_start(x), |pressure| pressure[p]);
         let edges = model.grid.locate(x).map_or_else(Vector::zeros, |cell| model.grid.cell_box(&cell).1);
@@ -211,6 +214,7 @@ impl<const D: usize> Wet<D> {
             ambient: if holds { water.still_pressure(x, end) } else { 0.0 },
             borne: model.still_water(end).filter(|_| holds).map_or(0.0, |still| still.pressure(x)),
             stiffness,
+            inertia,
             tau: edges.component_mul(&edges) * (volume * J * TAU / stiffness),
             before: points.pressure_gradient.as_ref().map_or_else(|| water.still_gradient(x, t), |before| before[p])
                 + points.gradient_change.as_ref().map_or_else(Vector::zeros, |change| change[p] * last),
