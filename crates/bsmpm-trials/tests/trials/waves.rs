@@ -150,7 +150,7 @@ fn a_wave_of_12_cells_has_its_speed_within_1_per_cent_by_default() {
     );
 }
 
-/// A pulse of two half waves of 8 Hz, a wave with 7.5 cells, arrives within 2 % of its path of where it should; by the
+/// A Ricker pulse of 5 Hz, whose wave has 12 cells at its peak frequency, arrives within 2 % of the exact time, by the
 /// largest correlation with what passed the nearer place.
 #[test]
 fn a_pulse_is_not_late() {
