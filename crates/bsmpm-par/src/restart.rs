@@ -10,6 +10,7 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
+use bsmpm::step::mass::MassMatrix;
 use bsmpm_io::checkpoint::{FOLDER, FoundCheckpoint};
 use bsmpm_io::directory::{Existing, OutputDirectory};
 use bsmpm_io::exit;
@@ -184,6 +185,11 @@ impl Resumed<'_> {
             )
         };
         self.state.lines(&case.grid).ok_or_else(foreign)
+    }
+
+    /// The run's mass matrix, whatever the program would choose today.
+    pub fn mass(&self, case: &Case) -> MassMatrix {
+        there::mass(&self.state.files.manifest, case)
     }
 
     /// Reads the points and the nodal displacement, each rank what lies in its slab; the model's grid gets the room

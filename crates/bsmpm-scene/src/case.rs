@@ -10,7 +10,7 @@ mod rigid;
 mod stage;
 mod water;
 
-pub use crate::words::{Base, Format, Geometry, Nonlinear, Support};
+pub use crate::words::{Base, Format, Geometry, Nonlinear, Support, Word};
 pub use element::{ElementStage, ElementTest};
 pub use flow::{Drain, DrainSite, Flow, Inflow};
 pub use history::{Check, Column, Counted, Face, History, Made, Quantity};
@@ -36,6 +36,9 @@ use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
+
+/// The key of the mass matrix.
+pub const MASS: &str = "analysis.mass";
 
 /// Everything that a run needs to know of what it solves.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,6 +138,20 @@ impl Case {
                 .collect::<Vec<_>>()
                 .join(", "),
             reason: "those of the run that is resumed".to_owned(),
+        });
+    }
+
+    /// Takes over the mass matrix of a run that goes on, whatever the program would choose today.
+    pub fn keep_mass(&mut self, mass: MassMatrix) {
+        if self.analysis.mass == mass {
+            return;
+        }
+        self.analysis.mass = mass;
+        self.notes.retain(|note| note.key != MASS);
+        self.notes.push(Choice {
+            key: MASS.to_owned(),
+            value: mass.word().to_owned(),
+            reason: "that of the run that is resumed".to_owned(),
         });
     }
 }

@@ -37,7 +37,9 @@ mod report;
 mod seed;
 mod sketch;
 mod source;
+mod spectrum;
 mod validate;
+mod waves;
 
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
@@ -45,9 +47,9 @@ pub use bsmpm::quadrature::Quadrature;
 pub use case::{
     Acting, Analysis, Base, Body, Case, Check, Checkpoint, Column, Counted, Drain, DrainSite, ElementStage,
     ElementTest, Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, Inflow, Initial,
-    LimitLoad, Linear, LoadWidth, LoadedLine, Made, MotionPath, NamedMaterial, NarrowestOpening, Nonlinear, Output,
-    Plate, PointLoad, Prescribed, Profile, Push, Quantity, Rigid, RigidShape, Shares, Site, Solver, SoughtLoad, Stage,
-    Support, Traction, Triangle, Water,
+    LimitLoad, Linear, LoadWidth, LoadedLine, MASS, Made, MotionPath, NamedMaterial, NarrowestOpening, Nonlinear,
+    Output, Plate, PointLoad, Prescribed, Profile, Push, Quantity, Rigid, RigidShape, Shares, Site, Solver, SoughtLoad,
+    Stage, Support, Traction, Triangle, Water,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

@@ -10,6 +10,7 @@ mod concentration;
 mod limit_load;
 mod rigid;
 mod scene;
+mod waves;
 
 use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
 use crate::error::Origin;
@@ -21,6 +22,7 @@ use crate::words::{Accuracy, Geometry, Order, Word};
 use bsmpm::stabilisation::Stabilisation;
 use cells::Cells;
 use scene::PresetScene;
+pub(crate) use scene::around;
 
 /// The key.
 const ACCURACY: &str = "accuracy";

@@ -35,6 +35,7 @@ mod strip;
 mod touching;
 mod uplift;
 mod water;
+mod waves;
 
 pub use flow::HELD_WATER;
 
@@ -166,6 +167,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     if case_use == CaseUse::ElementTests {
         return Some(case);
     }
+    waves::choose_mass(&mut case, record, report);
     side::of_pressures(&mut case, record, report);
     body::warn_of_overlap(&case, report);
     gap::check(&case, report);
@@ -194,6 +196,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     ratio::check(&case, record, report);
     flow::check(&case, record, report);
     axisymmetric::check(&case, record, report);
+    waves::check(&case, record, report);
     Some(Case { warnings: report.take_warnings(), notes: std::mem::take(&mut report.notes), ..case })
 }
 

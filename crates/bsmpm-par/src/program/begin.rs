@@ -63,6 +63,7 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     if let RunStart::Resumed(resumed) = &start {
         let lines = resumed.lines(&task.case).map_err(refused)?;
         task.case.keep_lines(lines);
+        task.case.keep_mass(resumed.mass(&task.case));
     }
     let Task { case, arguments, .. } = &task;
     if let RunStart::Complete(code) = start {

@@ -5,12 +5,13 @@ use crate::checkpoint::Refusal;
 use crate::ledger;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
+use bsmpm::step::mass::MassMatrix;
 use bsmpm_io::checkpoint::FoundCheckpoint;
 use bsmpm_io::directory::Existing;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Manifest, ManifestRestart, Status};
-use bsmpm_scene::words::RemovedWord;
-use bsmpm_scene::{Case, Difference, Error};
+use bsmpm_scene::words::{RemovedWord, Word};
+use bsmpm_scene::{Case, Difference, Error, MASS};
 
 /// Restarts in a row from one step after which no more is tried: the loop of a batch system would have no end.
 const MOST_FUTILE: usize = 3;
@@ -146,6 +147,16 @@ pub(super) fn new_defaults(past: &Manifest, case: &Case) -> Option<String> {
     })
 }
 
+/// The mass matrix of a run of a case. The program notes its choice of one; before it chose, a case without one had the
+/// lumped one.
+pub(super) fn mass(past: &Manifest, case: &Case) -> MassMatrix {
+    match past.choices.iter().find(|choice| choice.key == MASS) {
+        Some(choice) => MassMatrix::of(&choice.value).unwrap_or_default(),
+        None if case.notes.iter().any(|note| note.key == MASS) => MassMatrix::Lumped,
+        None => case.analysis.mass,
+    }
+}
+
 /// Why the run will not repeat to the bit, if so.
 pub(super) fn other_machine(past: &Manifest, ranks: u32, found: &FoundCheckpoint) -> Vec<String> {
     let mut reasons = Vec::new();
@@ -165,4 +176,59 @@ pub(super) fn other_machine(past: &Manifest, ranks: u32, found: &FoundCheckpoint
         }
     }
     reasons
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bsmpm_io::manifest::{ManifestCase, ManifestChoice};
+
+    const BLOCK: &str = r#"
+        geometry = "plane-strain"
+        [analysis]
+        type = "dynamic"
+        end = 1.0
+        dt = 0.1
+        [grid]
+        lower = [0, 0]
+        upper = [2, 2]
+        cell = 1.0
+        order = "quadratic"
+        [material.elastic]
+        model = "hencky"
+        young = 1e6
+        poisson = 0.0
+        density = 1000.0
+        [[body]]
+        material = "elastic"
+        box = { lower = [0, 0], upper = [2, 2] }
+        points_per_cell = 2
+        [gravity]
+        acceleration = [0.0, -9.81]
+        [boundary]
+        bottom = "fixed"
+    "#;
+
+    #[test]
+    fn a_run_that_goes_on_keeps_the_mass_matrix_that_it_began_with() {
+        let case = |overrides: &[&str]| {
+            let overrides: Vec<String> = overrides.iter().map(ToString::to_string).collect();
+            Case::from_bytes("block", BLOCK.as_bytes(), &overrides).unwrap()
+        };
+        let described = ManifestCase::new("block", "", "plane-strain", BLOCK.to_owned());
+        let mut past = Manifest::begin("0", Vec::new(), described);
+        let mut today = case(&[]);
+        assert_eq!(today.analysis.mass, MassMatrix::Consistent);
+        // A version that did not choose.
+        assert_eq!(mass(&past, &today), MassMatrix::Lumped);
+        today.keep_mass(MassMatrix::Lumped);
+        let noted: Vec<&str> = today.notes.iter().filter(|note| note.key == MASS).map(|note| &*note.value).collect();
+        assert_eq!((today.analysis.mass, &*noted), (MassMatrix::Lumped, &["lumped"][..]));
+        assert_eq!(mass(&past, &case(&["analysis.mass=consistent"])), MassMatrix::Consistent);
+        let chosen = |value: &str| ManifestChoice { key: MASS.into(), value: value.into(), reason: String::new() };
+        for (value, expected) in [("lumped", MassMatrix::Lumped), ("consistent", MassMatrix::Consistent)] {
+            past.choices = vec![chosen(value)];
+            assert_eq!(mass(&past, &case(&[])), expected);
+        }
+    }
 }

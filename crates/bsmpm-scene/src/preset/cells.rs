@@ -72,6 +72,7 @@ impl PresetScene<'_> {
         let [lower, upper] = self.bounds()?;
         let side = (upper[0] - lower[0]).min(upper[1] - lower[1]);
         let (size, why) = (side / preset.across, format!("{} across the {side} m of the bodies", preset.across));
+        let (size, why) = self.wave_cell(size).unwrap_or((size, why));
         let mut zones = self.zones(preset, size)?;
         zones.extend(self.at_openings(preset, size));
         if self.materials().any(|material| material.gives("band_width")) {

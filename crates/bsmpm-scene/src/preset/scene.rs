@@ -240,15 +240,16 @@ impl<'a> PresetScene<'a> {
     /// m/s  fastest shear wave in the bodies' materials, at the stiffest height
     fn shear_wave(&self) -> Option<f64> {
         let [lower, upper] = self.bounds()?;
-        let speed = |material: &Record| {
-            let density =
-                material.number("density").or_else(|| Some(material.number("unit_weight")? / STANDARD_GRAVITY))?;
-            let young =
-                material.number("young").or_else(|| stiffest(material.record("young")?, [lower[1], upper[1]]))?;
-            Some((young / (2.0 * (1.0 + material.number("poisson")?)) / density).sqrt())
-        };
+        let speed = |material: &Record| shear_wave(material, [lower[1], upper[1]]);
         self.materials().filter_map(speed).filter(|speed| speed.is_finite()).reduce(f64::max)
     }
+}
+
+/// m/s  shear wave in a material, as fast as it is between two heights
+pub(super) fn shear_wave(material: &Record, heights: [f64; 2]) -> Option<f64> {
+    let density = material.number("density").or_else(|| Some(material.number("unit_weight")? / STANDARD_GRAVITY))?;
+    let young = material.number("young").or_else(|| stiffest(material.record("young")?, heights))?;
+    Some((young / (2.0 * (1.0 + material.number("poisson")?)) / density).sqrt())
 }
 
 /// m  how far the corner of a rigid body that is farthest from its reference point would turn in the whole run at its
@@ -276,7 +277,7 @@ fn sides(body: &Record) -> Vec<([f64; 2], [f64; 2])> {
 }
 
 /// m  corners of a body's rectangle
-pub(super) fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
+pub(crate) fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
     if let Some(shape) = body.record("box") {
         return Some([shape.pair("lower")?, shape.pair("upper")?]);
     }

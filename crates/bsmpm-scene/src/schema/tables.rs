@@ -85,7 +85,13 @@ static ANALYSIS: Table = Table {
             Optional,
             "numerical damping of second order (WBZ-alpha): what is left at infinite frequency; 1 unless given: none",
         ),
-        key("mass", Choice(MassMatrix::WORDS), Optional, "mass matrix of the nodes; lumped unless given"),
+        key(
+            "mass",
+            Choice(MassMatrix::WORDS),
+            Optional,
+            "mass matrix of the nodes; consistent unless given, where nothing is in contact and either the ground shakes or all \
+             materials are elastic; otherwise lumped",
+        ),
         key(
             "purpose",
             Choice(Purpose::WORDS),

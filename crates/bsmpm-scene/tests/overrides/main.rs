@@ -198,7 +198,8 @@ fn the_full_case_in_si() {
         |what: &str| case.warnings.iter().filter(|told| told.starts_with("rigid.") && told.contains(what)).count();
     let (thin, placed) = (told("points on its two sides share nodes"), told("a stage places body.5 at it"));
     let cut = case.warnings.iter().filter(|told| told.contains("of the section at the start")).count();
-    assert_eq!((case.warnings.len(), thin, placed, cut), (8, 2, 1, 2), "{:?}", case.warnings);
+    let coarse = case.warnings.iter().filter(|warning| warning.contains("cells per wavelength")).count();
+    assert_eq!((case.warnings.len(), thin, placed, cut, coarse), (9, 2, 1, 2, 1), "{:?}", case.warnings);
 }
 
 #[test]

@@ -56,6 +56,7 @@ mod unsaturated_column;
 mod verdicts;
 mod water_and_friction;
 mod water_in_slopes;
+mod waves;
 
 #[path = "../support/mod.rs"]
 mod support;

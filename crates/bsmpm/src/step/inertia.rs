@@ -119,9 +119,14 @@ pub(super) fn map<const D: usize>(
     let arriving = momentum(&motion.v);
     inertia.a = mass.solve(momentum(&motion.a), &still);
     inertia.v = mass.solve(arriving.clone(), prescribed);
-    let moves = prescribed.iter().flatten().any(|&velocity| velocity != 0.0);
+    // On any rank: solutions are collective, and the nodes of one rank may all be free.
+    let given = || prescribed.iter().flatten();
+    let flags = [given().any(|&velocity| velocity != 0.0), given().next().is_some()];
+    let mut flags = flags.map(|flag| f64::from(u8::from(flag)));
+    mass.halo.maximum(&mut flags);
+    let [moves, holds] = flags.map(|flag| flag > 0.0);
     let consistent = mass.matrix == MassMatrix::Consistent;
-    if moves || consistent && prescribed.iter().flatten().next().is_some() {
+    if moves || consistent && holds {
         let free = mass.solve(arriving, &nowhere);
         let jump: Vec<f64> = inertia.v.iter().zip(&free).map(|(held, free)| held - free).collect();
         if moves {

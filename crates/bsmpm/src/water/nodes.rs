@@ -4,7 +4,7 @@ use crate::error::StepError;
 use crate::grid::transfer::scalars;
 use crate::grid::{Grid, Shape};
 use crate::kinematics::Kinematics;
-use crate::model::Model;
+use crate::model::{Model, Regime};
 use crate::parallel::{Halo, over_layers};
 use crate::points::Points;
 use crate::tensor::Vector;
@@ -17,6 +17,8 @@ use crate::water::ties::Ties;
 /// Share of the tau term, of h^2/M: with it the pair of splines of degree q and q - 1 is stable, and in one dimension
 /// the storage is lumped; see `water.md`.
 const TAU: f64 = 1.0 / 6.0;
+/// Square of the wave number of the shortest wave that cells hold, over 1/h^2.
+pub(super) const SHORTEST_WAVE: f64 = 10.0;
 /// Functions that see less than this part of the largest volume have no pressure.
 const UNSEEN: f64 = 1e-14;
 /// Round-off of the water's balance, of the volume that a function sees.
@@ -43,9 +45,11 @@ pub struct Wet<const D: usize> {
     pub ambient: f64,
     /// Pa  as much of it as acts on the ground as a force of its own
     pub borne: f64,
-    /// Pa  lambda + 2 mu
+    /// Pa  what resists the shortest waves that cells hold: lambda + 2 mu, and in dynamics the inertia of a step
     pub stiffness: f64,
-    /// m^D m2/Pa  V0 J tau h_i^2/M along the axes
+    /// Pa  as much of it as is inertia
+    pub inertia: f64,
+    /// m^D m2/Pa  V0 J tau h_i^2 over the stiffness, along the axes
     pub tau: Vector<D>,
     /// Pa/m  gradient of the whole pore pressure at t, and as much of it as goes on
     pub before: Vector<D>,
@@ -106,7 +110,8 @@ impl<const D: usize> Pores<D> {
         let (shape, end) = (full.lowered_with_derivatives(&model.grid, points), t + dt);
         let differences = Differences::of(model, points, (t, end));
         let duration = differences.now * dt;
-        let of_point = |p: usize| Wet::of(model, (water, flow), (points, p), (t, end), differences.last);
+        let inertia = inertia(model, dt);
+        let of_point = |p: usize| Wet::of(model, (water, flow), (points, p), (t, end), differences.last, inertia);
         let wet: Vec<Option<Wet<D>>> = (0..points.len()).map(of_point).collect();
         let pressure = points.pore_pressure.as_ref();
         let sums = halo.sum(&scalars::of_scalars(&shape, |p| {
@@ -167,6 +172,15 @@ impl<const D: usize> Pores<D> {
     }
 }
 
+/// m2/s2  what inertia resists the shortest waves with in a step of the length `dt`, s, per density: the factor of the
+/// mass over the square of their wave number; 0 at rest.
+fn inertia<K, const D: usize>(model: &Model<K, D>, dt: f64) -> f64 {
+    match model.regime {
+        Regime::QuasiStatic => 0.0,
+        Regime::Dynamic => model.newmark.factor(dt) * model.grid.smallest_edge().powi(2) / SHORTEST_WAVE,
+    }
+}
+
 impl<const D: usize> Wet<D> {
     fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
@@ -174,11 +188,14 @@ impl<const D: usize> Wet<D> {
         (points, p): (&Points<D>, usize),
         (t, end): (f64, f64),
         last: f64,
+        inertia: f64,
     ) -> Option<Self> {
         let material = usize::from(points.material[p]);
         let soil = flow.soils[material].as_ref()?;
         let law = &model.materials[material];
-        let stiffness = law.elastic().oedometric() * law.relative_stiffness(points.height(p));
+        let skeleton = law.elastic().oedometric() * law.relative_stiffness(points.height(p));
+        let inertia = inertia * points.mass[p] / points.volume[p];
+        let stiffness = skeleton + inertia;
         let (volume, J, x) = (points.volume[p], points.F.at(p).determinant(), &points.x[p]);
         let pressure = points.pore_pressure.as_ref().map_or_else(|| water.excess_at_start(x), |pressure| pressure[p]);
         let edges = model.grid.locate(x).map_or_else(Vector::zeros, |cell| model.grid.cell_box(&cell).1);
@@ -197,6 +214,7 @@ impl<const D: usize> Wet<D> {
             ambient: if holds { water.still_pressure(x, end) } else { 0.0 },
             borne: model.still_water(end).filter(|_| holds).map_or(0.0, |still| still.pressure(x)),
             stiffness,
+            inertia,
             tau: edges.component_mul(&edges) * (volume * J * TAU / stiffness),
             before: points.pressure_gradient.as_ref().map_or_else(|| water.still_gradient(x, t), |before| before[p])
                 + points.gradient_change.as_ref().map_or_else(Vector::zeros, |change| change[p] * last),

@@ -1,0 +1,71 @@
+//! Cells that are small enough for the waves of an input that a record or a table gives.
+
+use super::scene::PresetScene;
+use crate::record::Record;
+use crate::schema::LawName;
+use crate::spectrum::SHARE;
+use crate::waves::{WaveInput, fewest_cells, inputs};
+use crate::words::{AnalysisType, Side, Support, Word};
+use bsmpm::step::mass::MassMatrix;
+
+/// Part of the cells of a preset to which waves make them smaller at most: each half costs eight times as much.
+const SMALLEST: f64 = 0.25;
+
+impl PresetScene<'_> {
+    /// m  cells smaller than `size` (m) that the waves of an input need for 2 % of error in their speed, and why; `None`
+    /// where no waves need any.
+    pub(super) fn wave_cell(&self, size: f64) -> Option<(f64, String)> {
+        if self.root.record("analysis")?.word("type") != Some(AnalysisType::Dynamic) {
+            return None;
+        }
+        let order = super::ORDER;
+        let order = self.root.record("grid").and_then(|grid| grid.word("order")).unwrap_or(order);
+        let fewest = fewest_cells(self.mass(), order.degree());
+        let inputs = inputs(self.root);
+        let cells = inputs.iter().filter_map(|input| Some((input, self.slowest(input)? / (input.frequency * fewest))));
+        let (input, cell) = cells.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, cell)| *cell < size)?;
+        let (part, frequency) = (100.0 * SHARE, input.frequency);
+        let why =
+            format!("{fewest} in the wavelength of {frequency:.3} Hz, below which {part} % of {} lies", input.name);
+        Some(if cell < SMALLEST * size {
+            (SMALLEST * size, format!("a quarter of what the bodies want, at most; {why}, would be smaller"))
+        } else {
+            (cell, why)
+        })
+    }
+
+    /// The mass matrix that the case gives or that is chosen for it.
+    fn mass(&self) -> MassMatrix {
+        if let Some(given) = self.root.record("analysis").and_then(|analysis| analysis.word("mass")) {
+            return given;
+        }
+        let is_elastic = |material: &Record| material.word("model") == Some(LawName::Hencky);
+        let waves = self.root.record("shaking").is_some() || self.materials().all(is_elastic);
+        if waves && !self.touches() { MassMatrix::Consistent } else { MassMatrix::Lumped }
+    }
+
+    /// Whether a face of the grid, a strip or a rigid body is in contact with material.
+    fn touches(&self) -> bool {
+        let in_contact = |boundary: &Record, side: Side| {
+            let is_table = boundary.record(side.word()).is_some();
+            is_table || boundary.word(side.word()) == Some(Support::Contact)
+        };
+        let mut boundaries = self.root.record("boundary").into_iter();
+        let strips = self.root.record("footing").into_iter().chain(self.root.records("prescribed"));
+        boundaries.any(|boundary| Side::ALL.as_flattened().iter().any(|side| in_contact(boundary, *side)))
+            || !self.root.records("rigid").is_empty()
+            || strips.into_iter().any(|strip| ["base", "components"].into_iter().any(|key| strip.record(key).is_some()))
+    }
+
+    /// m/s  slowest elastic wave that an input makes in the bodies' materials, at the middle of their height
+    fn slowest(&self, input: &WaveInput) -> Option<f64> {
+        let [lower, upper] = self.bounds()?;
+        let speeds = self.materials().filter_map(|material| {
+            let shear = super::scene::shear_wave(material, [0.5 * (lower[1] + upper[1]); 2])?;
+            let poisson = material.number("poisson")?;
+            let ratio = if input.axis.is_some() { (2.0 - 2.0 * poisson) / (1.0 - 2.0 * poisson) } else { 1.0 };
+            Some(shear * ratio.sqrt())
+        });
+        speeds.filter(|speed| speed.is_finite() && *speed > 0.0).reduce(f64::min)
+    }
+}

@@ -1,0 +1,122 @@
+//! Inputs that are given by a record or a table, and the waves that they send into the bodies.
+//!
+//! They are read from the record of a case, so that presets know them before there is a grid.
+
+use crate::record::{ListRow, Record};
+use crate::region;
+use crate::spectrum::{InputKind, Signal};
+use crate::words::{Side, Support, Word};
+use bsmpm::step::mass::MassMatrix;
+
+/// What loads are given by, and which loads. Rigid bodies are left out: in contact material flows more than it swings.
+const FORCES: [&str; 4] = ["amplitude", "stress_path", "pressure_path", "force_path"];
+const LOADED: [&str; 2] = ["traction", "point_load"];
+
+/// Cells a wavelength at which the speed of a wave is wrong by 2 %, by splines of order 1 to 3. Rounded up from a bar
+/// with two and three points along each axis of a cell and 100 steps a period: the table of `cases/results/waves.md`.
+const LUMPED: [f64; 3] = [18.0, 24.0, 28.0];
+const CONSISTENT: [f64; 3] = [9.0, 8.0, 8.0];
+
+/// Cells a wavelength that waves need for 2 % of error in their speed, with splines of an order.
+pub(crate) fn fewest_cells(mass: MassMatrix, order: usize) -> f64 {
+    let of_order = match mass {
+        MassMatrix::Lumped => LUMPED,
+        MassMatrix::Consistent => CONSISTENT,
+    };
+    of_order[order - 1]
+}
+
+/// An input of waves.
+#[derive(Clone, Debug)]
+pub(crate) struct WaveInput {
+    /// Key of its table.
+    pub name: String,
+    /// Hz  below which [`crate::spectrum::SHARE`] of the energy of its velocity lies
+    pub frequency: f64,
+    /// The axis along which it compresses a bar that rollers guide; `None`: it makes shear waves.
+    pub axis: Option<usize>,
+}
+
+/// The inputs of a case that a record or a table gives, but for those that make no wave.
+pub(crate) fn inputs(root: &Record) -> Vec<WaveInput> {
+    let Some(end) = root.record("analysis").and_then(|analysis| analysis.number("end")) else { return Vec::new() };
+    let mut found = Vec::new();
+    let mut add = |record: &Record, kind: InputKind, rows: &[ListRow], axis: Option<usize>| {
+        let rows = rows.iter().map(|row| (row.numbers[0], row.numbers[1..].to_vec())).collect();
+        let frequency = Signal { kind, rows }.frequency(end);
+        found.extend(frequency.map(|frequency| WaveInput { name: record.path.clone(), frequency, axis }));
+    };
+    if let Some((record, rows)) = root.record("shaking").and_then(|of| Some((of, of.rows("acceleration")?))) {
+        add(record, InputKind::Acceleration, rows, guided(root, record, columns(rows)));
+    }
+    for (table, record) in LOADED.into_iter().flat_map(|table| listed(root, table)) {
+        for (key, rows) in FORCES.into_iter().filter_map(|key| Some((key, record.rows(key)?))) {
+            let along = if key == "amplitude" { stress(record) } else { columns(rows) };
+            let axis = if table == "traction" { guided(root, record, pressure(record).or(along)) } else { None };
+            add(record, InputKind::Force, rows, axis);
+        }
+    }
+    let footing = root.record("footing").map(|record| ("footing", record));
+    for (table, record) in listed(root, "prescribed").chain(footing) {
+        if let Some(rows) = record.rows("path") {
+            let axis = if table == "prescribed" { guided(root, record, columns(rows)) } else { None };
+            add(record, InputKind::Motion, rows, axis);
+        }
+    }
+    found
+}
+
+/// The tables of a list, each with the list's name.
+fn listed<'a>(root: &'a Record, table: &'static str) -> impl Iterator<Item = (&'static str, &'a Record)> {
+    root.records(table).iter().map(move |record| (table, record))
+}
+
+/// The only axis along which numbers are not zero.
+fn only(is_along: impl Fn(usize) -> bool) -> Option<usize> {
+    let along: Vec<usize> = (0..3).filter(|&axis| is_along(axis)).collect();
+    (along.len() == 1).then(|| along[0])
+}
+
+/// The only axis along which rows `[t, x, y, ...]` do anything.
+fn columns(rows: &[ListRow]) -> Option<usize> {
+    only(|axis| rows.iter().any(|row| row.numbers.get(1 + axis).is_some_and(|number| *number != 0.0)))
+}
+
+/// The only axis along which a traction acts.
+fn stress(record: &Record) -> Option<usize> {
+    let stress = record.vector("stress")?;
+    only(|axis| stress[axis] != 0.0)
+}
+
+/// The axis that is normal to a segment under a pressure.
+fn pressure(record: &Record) -> Option<usize> {
+    let is_pressure = record.gives("pressure") || record.gives("pressure_path");
+    let [from, to] = ends(record).filter(|_| is_pressure)?;
+    (0..2).find(|&axis| from[axis] == to[axis])
+}
+
+fn ends(record: &Record) -> Option<[[f64; 2]; 2]> {
+    Some([record.pair("from")?, record.pair("to")?])
+}
+
+/// The axis along which an input acts if its waves are of compression alone: rollers hold all faces along it, and it
+/// acts on a whole section of the bodies, in whose plane, or everywhere.
+fn guided(root: &Record, record: &Record, along: Option<usize>) -> Option<usize> {
+    let axis = along?;
+    let boundary = root.record("boundary")?;
+    let is_roller = |side: Side| boundary.word(side.word()) == Some(Support::Roller);
+    let sides = Side::of(root.word("geometry")?);
+    let is_guided = (0..sides.len()).filter(|of| *of != axis).all(|of| sides[of].into_iter().all(is_roller));
+    let is_whole = record.gives("face") || record.path == "shaking" || axis < 2 && covers(root, record, 1 - axis);
+    (is_guided && is_whole).then_some(axis)
+}
+
+/// Whether the segment of a table reaches across all bodies along an axis, in a plane.
+fn covers(root: &Record, record: &Record, across: usize) -> bool {
+    let corners: Option<Vec<[[f64; 2]; 2]>> = root.records("body").iter().map(crate::preset::around).collect();
+    let Some((corners, ends)) = corners.filter(|corners| !corners.is_empty()).zip(ends(record)) else { return false };
+    let bounds = region::bounds(&corners.concat());
+    let [lower, upper] = [ends[0][across].min(ends[1][across]), ends[0][across].max(ends[1][across])];
+    let slack = 1e-9 * (bounds[1][across] - bounds[0][across]);
+    lower <= bounds[0][across] + slack && upper >= bounds[1][across] - slack
+}
