@@ -33,8 +33,8 @@ pub const NO_CONVERGENCE: u8 = 80;
 /// the last converged state is saved.
 pub const LEFT: u8 = 81;
 
-/// The case's end was reached and its checks passed, but an indicator of the run is beyond its limit, which the case does
-/// not accept: the answer is likely to be wrong by 10 % or more.
+/// The case's end was reached and its checks passed, but an indicator of the run is beyond its limit, which the case
+/// does not accept: the answer is likely to be wrong by 10 % or more.
 pub const INDICATOR: u8 = 82;
 
 /// All of them.

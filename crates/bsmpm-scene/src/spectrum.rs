@@ -124,8 +124,8 @@ mod tests {
         }
     }
 
-    /// The spectrum of the velocity of a Ricker pulse of the frequency f is x² exp(-x²) with x = f'/f, and of its energy
-    /// x⁴ exp(-2 x²), 95 % of which lie below x = 1.664 (quadrature).
+    /// The spectrum of the velocity of a Ricker pulse of the frequency f is x² exp(-x²) with x = f'/f, and of its
+    /// energy x⁴ exp(-2 x²), 95 % of which lie below x = 1.664 (quadrature).
     #[test]
     fn a_ricker_pulse_has_the_frequency_of_its_closed_form() {
         let pulse = |t: f64| {

@@ -15,7 +15,8 @@ pub struct Indicator {
     pub usual: [f64; 2],
     /// Whether the value lies outside.
     pub unusual: bool,
-    /// Least and largest value up to which the answer is likely to be right within 10 %; none where no measurement tells.
+    /// Least and largest value up to which the answer is likely to be right within 10 %; none where no measurement
+    /// shows it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<[f64; 2]>,
     /// Whether the value lies beyond the limits.

@@ -12,8 +12,8 @@ use bsmpm::step::mass::MassMatrix;
 const SMALLEST: f64 = 0.25;
 
 impl PresetScene<'_> {
-    /// m  cells smaller than `size` (m) that the waves of an input need for 2 % of error in their speed, and why; `None`
-    /// where no waves need any.
+    /// m  cells smaller than `size` (m) that the waves of an input need for 2 % of error in their speed, and why;
+    /// `None` where no waves need any.
     pub(super) fn wave_cell(&self, size: f64) -> Option<(f64, String)> {
         if self.root.record("analysis")?.word("type") != Some(AnalysisType::Dynamic) {
             return None;

@@ -1,7 +1,8 @@
 //! Words of what frames and profiles show of the points.
 
 choice! {
-    /// An indicator that ends a run with an exit code of its own where it is beyond its limit, unless the case accepts it.
+    /// An indicator that ends a run with an exit code of its own where it is beyond its limit, unless the case accepts
+    /// it.
     pub enum LimitedIndicator {
         /// Work done on the soft background.
         BackgroundWork = "background-work",

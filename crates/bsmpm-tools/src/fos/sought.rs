@@ -5,8 +5,8 @@ use bsmpm_scene::words::{Geometry, Side};
 use clap::ValueEnum;
 use serde::Serialize;
 
-/// The factor, or coefficient, of the body that shows the elastic displacement: its materials follow their elastic laws,
-/// without strength that could limit the stress.
+/// The factor, or coefficient, of the body that shows the elastic displacement: its materials follow their elastic
+/// laws, without strength that could limit the stress.
 pub(super) const ELASTIC: f64 = 0.0;
 /// The least factor that a case may have.
 pub(super) const LEAST: f64 = 0.1;

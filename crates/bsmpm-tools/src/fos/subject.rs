@@ -233,8 +233,8 @@ impl Subject {
         [&self.set[..], &self.sought.overrides(&self.case, factor, self.conditions.stiffness), &unloaded].concat()
     }
 
-    /// The overrides, and the case's text, of the elastic body under the inertia that the search begins with; none where
-    /// strength is divided, as its trials have one elastic body.
+    /// The overrides, and the case's text, of the elastic body under the inertia that the search begins with; none
+    /// where strength is divided, as its trials have one elastic body.
     pub fn pushed_elastic(&self) -> Result<Option<(Vec<String>, String)>, Error> {
         if !self.sought.is_seismic() {
             return Ok(None);

@@ -105,7 +105,8 @@ fn an_anchor_plate_carries_less_in_smaller_cells_towards_what_blocks_allow() {
 
 /// It rolls with 2/3 g sin(theta), and with little friction slips with g (sin(theta) - mu cos(theta)). Cells of a
 /// quarter of the radius, with one point after the other under the disc, are 3.1 and 3.9 % behind, in steps of any
-/// length: backward Euler, which is of first order, was 1.7 and 2.4 % behind in these steps, and 2.8 % in a quarter of them.
+/// length: backward Euler, which is of first order, was 1.7 and 2.4 % behind in these steps, and 2.8 % in a quarter of
+/// them.
 #[test]
 fn a_disc_rolls_and_slips_down_an_incline() {
     let [along, across] = [2.8188, 9.3963];

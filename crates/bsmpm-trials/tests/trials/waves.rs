@@ -17,8 +17,8 @@ const PLACES: [f64; 2] = [9.0, 21.0];
 /// s  of a run, in which the wave is steady over the last two periods
 const END: f64 = 1.2;
 
-/// A bar between rollers, Poisson's ratio 0, pushed at its left end by `amplitude`, rows [t, share]; at its right end it
-/// absorbs.
+/// A bar between rollers, Poisson's ratio 0, pushed at its left end by `amplitude`, rows [t, share]; at its right end
+/// it absorbs.
 fn bar(cell: f64, order: &str, dt: f64, amplitude: impl Fn(f64) -> f64) -> String {
     let length = (36.0 / cell).ceil() * cell;
     let rows: Vec<String> = (1..=(END / dt).round() as usize)
@@ -181,8 +181,8 @@ const DENSITY: f64 = 2000.0;
 /// -  porosity
 const PORES: f64 = 0.4;
 
-/// A column between rollers whose water is `ratio` times as stiff as the skeleton, in so many cells over 10 periods of 60
-/// steps; with its period, s.
+/// A column between rollers whose water is `ratio` times as stiff as the skeleton, in so many cells over 10 periods of
+/// 60 steps; with its period, s.
 fn column(ratio: f64, cells: f64) -> (String, f64) {
     let (cell, modulus) = (HEIGHT / cells, (1.0 + ratio) * SKELETON);
     let period = 4.0 * HEIGHT / (modulus / DENSITY).sqrt();
@@ -251,8 +251,8 @@ fn vibration(table: &Columns, rest: f64) -> (f64, f64) {
     (2.0 * (passages[last] - passages[0]) / last as f64, kept)
 }
 
-/// T = 4 H sqrt(rho/(M + K/n)). With the tau term of rest, whose compliance of h^2 k^2/(6 M) comes to that of the water,
-/// the periods were 1.8 and 18 % long.
+/// T = 4 H sqrt(rho/(M + K/n)). With the tau term of rest, whose compliance of h^2 k^2/(6 M) comes to that of the
+/// water, the periods were 1.8 and 18 % long.
 #[test]
 fn a_column_without_drainage_vibrates_with_the_period_of_its_water() {
     for ratio in [10.0, 100.0] {

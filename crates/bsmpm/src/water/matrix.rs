@@ -32,8 +32,8 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
         for p in patch.points.clone() {
             let Some(wet) = &pores.wet[p] else { continue };
             scalars::functions_of(&pores.shape, p, &mut functions);
-            // What gives way to a pressure of the wave number k, k^2/(M k^2 + rho a), by its tangent at the shortest wave:
-            // a part as at rest, and one that grows with k^2.
+            // What gives way to a pressure of the wave number k, k^2/(M k^2 + rho a), by its tangent at the shortest
+            // wave: a part as at rest, and one that grows with k^2.
             let [at_rest, in_waves] = [wet.stiffness - wet.inertia, wave * wet.inertia]
                 .map(|part| wet.volume * wet.J.powi(2) * part / wet.stiffness.powi(2));
             let mut gives_way = 1.0;

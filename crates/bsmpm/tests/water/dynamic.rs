@@ -18,7 +18,8 @@ const TIMES: [f64; 5] = [0.5, 1.0, 2.0, 4.0, 10.0];
 
 #[test]
 fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
-    // A step is accepted once the water's balance is off by 1e-13 of the volume: 1e-6 of the energy under a tenth of this.
+    // A step is accepted once the water's balance is off by 1e-13 of the volume: 1e-6 of the energy under a tenth of
+    // this load.
     let load = 1e-4 * M;
     for (damping, expected) in TABLE {
         let mut scene = column(20, 1.0, load, PermeabilityLaw::Constant);

@@ -2,9 +2,9 @@
 //!
 //! Ground that spreads under a block slides outwards on both sides of it. Between the two a point sticks, whose
 //! friction is what balance asks for: with all points sliding nothing resists a motion of the block along its base.
-//! Without inertia the point that slides least is taken to stick. Where it would need more than Coulomb's limit, the next
-//! correction lets it slide and takes the next one, so that the neutral point moves along the base. If all points slide
-//! in one direction, nothing holds the body.
+//! Without inertia the point that slides least is taken to stick. Where it would need more than Coulomb's limit, the
+//! next correction lets it slide and takes the next one, so that the neutral point moves along the base. If all points
+//! slide in one direction, nothing holds the body.
 
 use super::body::MOTIONS;
 use super::point::{Grip, RigidPoint};
