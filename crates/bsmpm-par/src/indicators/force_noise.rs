@@ -43,7 +43,7 @@ fn is_force(quantity: &Quantity) -> bool {
 fn noise(force: &History, times: &[f64], history: &Columns) -> Option<f64> {
     let magnitude = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let names = force.columns().into_iter().map(|column| column.name);
-    let columns: Vec<&[f64]> = names.filter_map(|name| history.get(&name).map(|values| &values[..])).collect();
+    let columns: Vec<&[f64]> = names.filter_map(|name| history.get(&name)).collect();
     let largest = columns.iter().map(|values| magnitude(values)).fold(0.0, f64::max);
     let judged = columns.into_iter().filter(|values| magnitude(values) > SMALL * largest);
     judged.filter_map(|values| Some(deviation(times, values)? / magnitude(values))).reduce(f64::max)
