@@ -312,20 +312,22 @@ fn smoothing(case: &Case, passes: f64) -> Indicator {
     Indicator::new(setup::smoothing_length(case, passes), "m", meaning, [0.0, part * case.thinnest()])
 }
 
-/// All of them in a line, and a line on each that is unusual.
-pub fn told(indicators: &BTreeMap<String, Indicator>) -> (String, Vec<String>) {
-    let number = |value: f64| format!("{value:.2e}");
-    let unit =
-        |indicator: &Indicator| if indicator.unit == "-" { String::new() } else { format!(" {}", indicator.unit) };
-    let all = indicators.iter().map(|(name, found)| format!("{name} {}{}", number(found.value), unit(found)));
-    let unusual = indicators.iter().filter(|(_, found)| found.unusual || found.failed).map(|(name, found)| {
-        let [least, most] = found.usual.map(number);
-        let advice = if found.advice.is_empty() { String::new() } else { format!("; {}", found.advice) };
-        let (value, unit) = (number(found.value), unit(found));
-        let verdict = verdict(name, found);
-        format!("{verdict}: {name} is {value}{unit}, usually {least} to {most}: {}{advice}", found.meaning)
-    });
-    (format!("indicators: {}", all.collect::<Vec<_>>().join(", ")), unusual.collect())
+/// All of them in a line.
+pub fn line(indicators: &BTreeMap<String, Indicator>) -> String {
+    let all = indicators.iter().map(|(name, found)| format!("{name} {:.2e}{}", found.value, unit(found)));
+    format!("indicators: {}", all.collect::<Vec<_>>().join(", "))
+}
+
+fn unit(indicator: &Indicator) -> String {
+    if indicator.unit == "-" { String::new() } else { format!(" {}", indicator.unit) }
+}
+
+/// What is to be said of an indicator that is outside its usual range.
+pub fn description(name: &str, found: &Indicator) -> String {
+    let [least, most] = found.usual.map(|value| format!("{value:.2e}"));
+    let advice = if found.advice.is_empty() { String::new() } else { format!("; {}", found.advice) };
+    let (value, verdict) = (format!("{:.2e}{}", found.value, unit(found)), verdict(name, found));
+    format!("{verdict}: {name} is {value}, usually {least} to {most}: {}{advice}", found.meaning)
 }
 
 /// How a value outside the usual range is judged.

@@ -16,7 +16,6 @@ pub(super) fn of(name: &str, case: &Case) -> Option<[f64; 2]> {
         LimitedIndicator::InterfaceShift => 0.1,
         LimitedIndicator::PermeabilityShift => 0.2,
         LimitedIndicator::RigidPenetration => 0.2,
-        LimitedIndicator::Slip => 0.1,
         LimitedIndicator::StepAdvance => 1.0,
         LimitedIndicator::WallVelocity => return Some([-0.5, 0.5]),
         LimitedIndicator::WaterBalance => 0.1,

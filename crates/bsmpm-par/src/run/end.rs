@@ -9,7 +9,7 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
 use bsmpm_io::directory::HISTORY;
 use bsmpm_io::exit;
-use bsmpm_io::manifest::{Communication, Indicator, SolverNames, Status};
+use bsmpm_io::manifest::{Communication, SolverNames, Status};
 use bsmpm_io::table;
 use bsmpm_ranks::linear::Tallies;
 use bsmpm_ranks::simulation::Simulation;
@@ -53,7 +53,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         run.judge_itself();
         if let Some(ledger) = &mut run.ledger {
-            failed[1] = f64::from(ledger.manifest().indicators.values().any(Indicator::ends_run));
+            for (name, found) in ledger.manifest().indicators.iter().filter(|(_, found)| found.ends_run()) {
+                failed[1] = 1.0;
+                run.log.failure(&indicators::description(name, found));
+            }
         }
         run.simulation.halo.maximum(&mut failed);
         let (status, code) = match failed.map(|failed| failed > 0.0) {
@@ -135,8 +138,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let wall = self.wall();
         let Some(ledger) = &mut self.ledger else { return };
         let summary = ledger.manifest().summary.clone();
-        let (all, unusual) = indicators::told(&ledger.manifest().indicators);
-        let judged = !ledger.manifest().indicators.is_empty();
+        let found = ledger.manifest().indicators.clone();
         let text = format!(
             "{status:?} at t = {}: {} steps, {} iterations, {} cuts, {:.1} s by the clock, {:.1} CPU s, \
              {:.0} MiB on the largest rank; written to {}",
@@ -160,10 +162,13 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             );
             self.log.line("settled", &text);
         }
-        if judged {
-            self.log.line("indicators", &all);
+        if !found.is_empty() {
+            self.log.line("indicators", &indicators::line(&found));
         }
-        unusual.iter().for_each(|line| self.log.line("indicator", line));
+        // Those that end the run have been named.
+        for (name, indicator) in found.iter().filter(|(_, found)| found.unusual && !found.ends_run()) {
+            self.log.line("indicator", &indicators::description(name, indicator));
+        }
     }
 }
 

@@ -18,8 +18,6 @@ choice! {
         PermeabilityShift = "permeability-shift",
         /// Depth of material in a rigid body.
         RigidPenetration = "rigid-penetration",
-        /// Slip of a strip.
-        Slip = "slip",
         /// Distance that a point moved in a step of dynamics.
         StepAdvance = "step-advance",
         /// Velocity of points next to fixed faces.
