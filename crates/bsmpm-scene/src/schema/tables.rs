@@ -13,6 +13,7 @@ use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
+use bsmpm::step::walls::WallVelocity;
 use std::ops::Bound::{Excluded, Included};
 
 /// The whole file.
@@ -86,6 +87,13 @@ static ANALYSIS: Table = Table {
             "numerical damping of second order (WBZ-alpha): what is left at infinite frequency; 1 unless given: none",
         ),
         key("mass", Choice(MassMatrix::WORDS), Optional, "mass matrix of the nodes; lumped unless given"),
+        key(
+            "wall_velocity",
+            Choice(WallVelocity::WORDS),
+            Optional,
+            "velocity that material points within a cell of a fixed face keep; own unless given, but relaxed for mu-i \
+             material with lumped mass",
+        ),
         key(
             "purpose",
             Choice(Purpose::WORDS),
