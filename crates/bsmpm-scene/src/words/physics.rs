@@ -14,7 +14,7 @@ words! { MassMatrix {
 
 words! { WallVelocity {
     Own = "own": "their own: the paper's",
-    Relaxed = "relaxed": "it relaxes to that of their motion, over a path of about a cell",
+    Relaxed = "relaxed": "it relaxes to that of their motion, over a path of a quarter of a cell",
 } }
 
 words! { Stabilisation {
