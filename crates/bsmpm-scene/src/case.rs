@@ -36,6 +36,7 @@ use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
+use bsmpm::step::walls::WallVelocity;
 
 /// The key of the mass matrix.
 pub const MASS: &str = "analysis.mass";
@@ -174,6 +175,8 @@ pub struct Analysis {
     pub newmark: Newmark,
     /// Mass matrix of the nodes in dynamics.
     pub mass: MassMatrix,
+    /// Which velocity points near fixed faces keep in dynamics.
+    pub wall_velocity: WallVelocity,
 }
 
 /// A material and its name.

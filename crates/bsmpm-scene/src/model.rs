@@ -49,6 +49,7 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
         regime: case.analysis.regime,
         newmark: case.analysis.newmark,
         mass: case.analysis.mass,
+        wall_velocity: case.analysis.wall_velocity,
         weighting: weighting(case),
         gravity: case.gravity.as_ref().map(|gravity| Gravity {
             acceleration: vector(gravity.acceleration),

@@ -48,6 +48,7 @@ use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
+use bsmpm::step::walls::WallVelocity;
 
 /// Coefficient of friction up to which faces and strips in contact were verified.
 const MOST_SHOWN_FRICTION: f64 = 1.0;
@@ -172,6 +173,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     body::warn_of_overlap(&case, report);
     gap::check(&case, report);
     solver::of_case(&mut case, record, report);
+    physics::walls(&mut case, record, report);
     solver::warn_of_background(&case, report);
     solid::check(&case, record, report);
     rigid::check(&case, record, report);
@@ -238,6 +240,7 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
         growth,
         newmark: newmark(analysis, regime, report)?,
         mass: mass(analysis, regime, report),
+        wall_velocity: wall_velocity(analysis, regime, report),
     })
 }
 
@@ -284,6 +287,14 @@ fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatri
         analysis.error("mass", "there is no inertia, and so no mass matrix, in a quasi-static analysis", report);
     }
     analysis.word("mass").unwrap_or_default()
+}
+
+/// The velocities near fixed faces, as given, of which only a dynamic analysis has any; see [`physics::walls`].
+fn wall_velocity(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> WallVelocity {
+    if regime == Regime::QuasiStatic && analysis.gives("wall_velocity") {
+        analysis.error("wall_velocity", "points have no velocity in a quasi-static analysis", report);
+    }
+    analysis.word("wall_velocity").unwrap_or_default()
 }
 
 /// Supports of the grid's faces; none after an error.

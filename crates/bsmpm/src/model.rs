@@ -15,6 +15,7 @@ use crate::schedule::between;
 use crate::stabilisation::{Grouped, Groups, Stabilisation};
 use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
+use crate::step::walls::WallVelocity;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
 use crate::water::ambient::{Ambient, Span, StillWater};
@@ -108,6 +109,8 @@ pub struct Model<K, const D: usize> {
     pub newmark: Newmark,
     /// Mass matrix in dynamics.
     pub mass: MassMatrix,
+    /// Which velocity points near fixed faces keep in dynamics.
+    pub wall_velocity: WallVelocity,
     /// Weights of the averages.
     pub weighting: Weighting,
     /// Body force, if any.

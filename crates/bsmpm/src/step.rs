@@ -19,6 +19,7 @@ pub mod residual;
 pub mod smooth;
 pub mod stiffness;
 pub mod trial;
+pub mod walls;
 
 pub use report::{Counts, StepReport};
 

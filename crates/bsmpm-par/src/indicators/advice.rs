@@ -4,6 +4,7 @@ use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
+use bsmpm::step::walls::WallVelocity;
 use bsmpm_scene::{Case, Geometry};
 
 /// Poisson's ratio from which on material is nearly incompressible: the lid-driven square and the footing of
@@ -26,11 +27,14 @@ pub(super) fn of(name: &str, case: &Case) -> String {
         "wall-velocity" => format!(
             "points there keep velocities that the grid holds, and are not braked by the wall as they should be: \
              layers of a cell slide too far. {}",
-            match case.analysis.mass {
-                MassMatrix::Lumped => {
-                    "Use smaller cells, analysis.mass = \"consistent\", or a face with { friction = ... }."
+            match (case.analysis.wall_velocity, case.analysis.mass) {
+                (WallVelocity::Relaxed, _) => "Use smaller cells, or a face with { friction = ... }.",
+                (WallVelocity::Own, MassMatrix::Lumped) => {
+                    "Set analysis.wall_velocity = \"relaxed\", use smaller cells, or a face with { friction = ... }."
                 }
-                MassMatrix::Consistent => "Use smaller cells, or a face with { friction = ... }.",
+                (WallVelocity::Own, MassMatrix::Consistent) => {
+                    "Set analysis.wall_velocity = \"relaxed\", or use smaller cells."
+                }
             }
         ),
         "force-noise" => {

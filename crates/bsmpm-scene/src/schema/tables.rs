@@ -13,6 +13,7 @@ use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
+use bsmpm::step::walls::WallVelocity;
 use std::ops::Bound::{Excluded, Included};
 
 /// The whole file.
@@ -91,6 +92,13 @@ static ANALYSIS: Table = Table {
             Optional,
             "mass matrix of the nodes; consistent unless given, where nothing is in contact and either the ground shakes or all \
              materials are elastic; otherwise lumped",
+        ),
+        key(
+            "wall_velocity",
+            Choice(WallVelocity::WORDS),
+            Optional,
+            "velocity that material points within a cell of a fixed face keep; own unless given, but relaxed for mu-i \
+             material with lumped mass",
         ),
         key(
             "purpose",

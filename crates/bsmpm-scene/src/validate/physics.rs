@@ -5,14 +5,16 @@ use super::place;
 use super::rigid;
 use super::site::{normal_of, places};
 use super::strip::{moves, with_body};
-use crate::case::{Acting, Base, Body, Case, Drain, Geometry, Initial, Site, Support};
+use crate::case::{Acting, Base, Body, Case, Drain, Geometry, History, Initial, Quantity, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{AnalysisType, Side, Word};
+use crate::words::{AnalysisType, Measurement, Side, Word};
+use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
+use bsmpm::step::walls::WallVelocity;
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Given;
 
@@ -282,6 +284,31 @@ fn held_by_strip(case: &Case, component: usize, except: Option<Acting>) -> bool 
     let footing = case.footing.iter().map(|footing| (footing.base, footing.site));
     let all = footing.chain(case.prescribed.iter().map(|prescribed| (prescribed.base, prescribed.site)));
     all.enumerate().any(|(number, strip)| Some(Acting::Strip(number)) != except && by_strip(strip))
+}
+
+/// Chooses the velocities near fixed faces of material that flows, where they are not given, and recommends a measure
+/// of its run-out. With the points' own velocities and lumped mass the front runs out a third too far.
+pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
+    let is_mu_i = |number: usize| matches!(case.materials[number].material, Material::MuI(_));
+    let flows = (0..case.materials.len()).any(|number| is_mu_i(number) && case.is_followed(number));
+    if !flows || case.analysis.regime != Regime::Dynamic || !case.boundary.as_flattened().contains(&Support::Fixed) {
+        return;
+    }
+    let is_percentile =
+        |history: &History| matches!(history.quantity, Quantity::Runout { percentile, .. } if percentile < 100.0);
+    let records_front = case.histories.iter().any(|history| history.quantity == Quantity::Front);
+    if records_front && !case.histories.iter().any(is_percentile) {
+        let reason = "on a fixed face a tip thinner than a cell runs ahead by 10 to 20 % of the run-out. Add quantity = \
+                      \"runout\" with percentile = 99";
+        report.note("history", Measurement::Front.word(), reason);
+    }
+    let given = record.record("analysis").is_some_and(|analysis| analysis.gives("wall_velocity"));
+    if given || case.analysis.mass != MassMatrix::Lumped {
+        return;
+    }
+    case.analysis.wall_velocity = WallVelocity::Relaxed;
+    let reason = "material flows along a fixed face: points there do not keep velocities that are not their motion";
+    report.note("analysis.wall_velocity", WallVelocity::Relaxed.word(), reason);
 }
 
 /// Whether a body reaches into the cells along a face, and so has nodes on it.

@@ -4,10 +4,12 @@ choice! {
     /// What a history records, without what it needs besides, which [`Quantity`](crate::Quantity) has.
     pub enum Measurement {
         /// The x that `percentile` per cent of the points do not exceed; 100: of the farthest point. In the grid's
-        /// coordinates: the initial length is not taken off.
+        /// coordinates: the initial length is not taken off. For the run-out of a flow use `percentile = 99`: single
+        /// points and a tip thinner than a cell run ahead.
         Runout = "runout",
         /// The farthest x of the lowest occupied row of cells such that the points from it back by the length of its
-        /// cell fill half of a cell; a few loose points run ahead of it.
+        /// cell fill half of a cell; a few loose points run ahead of it. It does not converge where the tip is thinner
+        /// on finer grids: for run-outs use `runout` with `percentile = 99`.
         Front = "front",
         /// The largest y of any point, or of those within half a cell of `at_x`; 0 where there are none.
         Height = "height",

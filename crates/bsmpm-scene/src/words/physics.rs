@@ -4,11 +4,17 @@ use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
+use bsmpm::step::walls::WallVelocity;
 use bsmpm::water::flow::PermeabilityLaw;
 
 words! { MassMatrix {
     Lumped = "lumped": "diagonal, the paper's",
     Consistent = "consistent": "mostly the consistent one",
+} }
+
+words! { WallVelocity {
+    Own = "own": "their own: the paper's",
+    Relaxed = "relaxed": "it relaxes to that of their motion, over a path of a quarter of a cell",
 } }
 
 words! { Stabilisation {

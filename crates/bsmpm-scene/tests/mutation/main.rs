@@ -85,7 +85,7 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ),
     ],
     &[
-        ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8\nmass = \"consistent\""),
+        ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8\nmass = \"consistent\"\nwall_velocity = \"relaxed\""),
         ("\"tresca\"", "\"von-mises\""),
         (
             "stress = [0.0, \"-20 kPa\"]\nramp = \"0.5 s\"",

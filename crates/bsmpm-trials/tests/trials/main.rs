@@ -32,6 +32,7 @@ mod references;
 mod restart;
 mod rigid;
 mod room;
+mod run_outs;
 mod saturated_column;
 mod scenes;
 mod scripts;

@@ -8,7 +8,6 @@
 //! 1.33), as nothing resists, so that tau/J lies outside of the yield surface that tau is on.
 
 use crate::error::StepError;
-use crate::exact::Exact;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::{Material, MaterialError, Response, Separation};
@@ -22,6 +21,7 @@ use crate::step::mass::MassMatrix;
 use crate::step::nodes::Nodes;
 use crate::step::smooth;
 use crate::step::trial::Trial;
+use crate::step::walls;
 use crate::tensor::{Symmetric, Vector};
 use crate::threads;
 use crate::water::saved;
@@ -188,7 +188,10 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     let du = transfer::to_points::<D, D, _>(shape, &u, |_, du| Vector::from(du));
     let mut advance = [threads::largest(du.len(), |p| du[p].norm_squared()).sqrt()];
     halo.maximum(&mut advance);
-    let beside_fixed = nodes.inertia.as_ref().and_then(|inertia| beside_fixed(model, points, (&du, inertia.dt), halo));
+    let beside_fixed = nodes.inertia.as_ref().and_then(|inertia| {
+        walls::relax(model, points, &du, inertia.dt);
+        walls::excess(model, points, &du, inertia.dt, halo)
+    });
     threads::change(&mut points.x, 1, |p, x| x[0] += du[p]); // (11a)
     threads::change(&mut points.u, 1, |p, u| u[0] += du[p]); // (11b)
     points.state = state;
@@ -244,41 +247,6 @@ fn keep<K: Kinematics<D>, const D: usize>(
     drop((sigmas, elastic, Fs, plastic));
     (points.sigma, points.b_e, points.F, points.eps_p) = (sigma, b_e, F, eps_p);
     points.dilation = dilation.or(points.dilation.take());
-}
-
-/// Cells by which a point beside a fixed face must have been displaced since the start for its velocity to count.
-/// Ground that vibrates about its place keeps such velocities too, but nothing slides by them.
-const LEAST_PATH: f64 = 0.05;
-
-/// Kinetic energy, J, that points within a cell of a face which holds all components have by their velocities, beyond
-/// that of the motion `du`, m, which they make in the step of the length `dt`, over all ranks: there the field that
-/// moves them goes to zero, and a lumped mass lets them keep what they had. Points that have hardly moved since the
-/// start do not count.
-fn beside_fixed<K, const D: usize>(
-    model: &Model<K, D>,
-    points: &Points<D>,
-    (du, dt): (&[Vector<D>], f64),
-    halo: &dyn Halo,
-) -> Option<f64> {
-    let fixed = model.boundary.supports.iter().filter(|support| support.velocity == [Some(0.0); D]);
-    let near: Vec<(usize, [f64; 2])> = fixed
-        .map(|support| {
-            let axis = &model.grid.axes()[support.axis];
-            let cell = if support.upper { axis.cells() - 1 } else { 0 };
-            (support.axis, [cell, cell + 1].map(|line| axis.breakpoint(line)))
-        })
-        .collect();
-    let v = &points.motion.as_ref().filter(|_| !near.is_empty())?.v;
-    let is_near = |p: &usize| {
-        let path = (points.u[*p] + du[*p]).norm();
-        let counts = |axis: usize, [from, to]: [f64; 2]| {
-            (from..=to).contains(&points.x[*p][axis]) && path > LEAST_PATH * (to - from)
-        };
-        near.iter().any(|(axis, cell)| counts(*axis, *cell))
-    };
-    let excess = |p: usize| 0.5 * points.mass[p] * (v[p].norm_squared() - (du[p] / dt).norm_squared());
-    let sum: Exact = (0..points.len()).filter(is_near).map(excess).collect();
-    Some(halo.total(&[sum])[0])
 }
 
 /// Gap of every point after the step, if some material closes its gaps.

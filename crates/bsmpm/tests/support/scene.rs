@@ -19,6 +19,7 @@ use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::{Groups, Stabilisation};
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
+use bsmpm::step::walls::WallVelocity;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -61,6 +62,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             regime,
             newmark: Newmark::default(),
             mass: MassMatrix::default(),
+            wall_velocity: WallVelocity::default(),
             weighting: Weighting::Mass,
             gravity: None,
             shaking: None,

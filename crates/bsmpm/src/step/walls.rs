@@ -1,0 +1,127 @@
+//! Velocities of material points within a cell of a fixed face.
+//!
+//! The nodes of a fixed face are at rest, and the displacement field vanishes there. A point near the face therefore
+//! hardly moves. With a lumped mass matrix it nevertheless keeps its velocity, because the accelerations that it
+//! receives vanish there, too (Eq. 11.3). The other nodes of the cell receive this momentum in every step, so that
+//! friction at the face does not brake a layer of one cell as it should.
+//!
+//! [`WallVelocity::Relaxed`] removes the excess. With the displacement `Δu_p` of a step of the length `dt`,
+//!
+//! ```text
+//! w_p = v_p - Δu_p / dt                           excess velocity
+//! v_p ← v_p - s_p min(1, RATE |w_p| dt / h) w_p
+//! ```
+//!
+//! h is the thickness of the cell at the face, and s_p the share of the nodes of fixed faces in the shape functions at
+//! the point, `(1 - ξ)^q` at the distance ξ h from the face with splines of degree q. The excess decays over a path of
+//! a quarter of a cell, whatever the length of the step, and the face takes the momentum. Points that vibrate about
+//! their place are hardly affected: their path is a small part of a cell. The energy account counts the loss as
+//! transfer.
+//!
+//! A rate in steps instead of path (PIC in the cell at the face) would grow without bound as steps get shorter, and
+//! stop layers that are thinner than a cell at once.
+
+use crate::boundary::Support;
+use crate::exact::Exact;
+use crate::model::Model;
+use crate::parallel::Halo;
+use crate::points::Points;
+use crate::tensor::Vector;
+use crate::threads;
+
+/// Which velocity points within a cell of a fixed face keep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WallVelocity {
+    /// Their own, by Newmark's formula: the paper's.
+    #[default]
+    Own,
+    /// It relaxes to that of their motion, see the module.
+    Relaxed,
+}
+
+/// Rate of the relaxation (-), over the path of the excess velocity in cells. For the run-outs that chose it see
+/// `boundary.md`.
+const RATE: f64 = 4.0;
+
+/// Cells by which a point beside a fixed face must have been displaced since the start for its velocity to count.
+/// Ground that vibrates about its place keeps such velocities too, but nothing slides by them.
+const LEAST_PATH: f64 = 0.05;
+
+/// The cells at a face of the grid that holds all components.
+#[derive(Clone, Copy, Debug)]
+struct Layer {
+    /// normal of the face
+    axis: usize,
+    /// m  the face
+    face: f64,
+    /// m  the other end of the cells
+    end: f64,
+}
+
+impl Layer {
+    /// Distance (-) from the face in cells, if the place is in the layer.
+    fn depth<const D: usize>(&self, x: &Vector<D>) -> Option<f64> {
+        let depth = (x[self.axis] - self.face) / (self.end - self.face);
+        (0.0..=1.0).contains(&depth).then_some(depth)
+    }
+
+    /// Thickness, m.
+    fn thickness(&self) -> f64 {
+        (self.end - self.face).abs()
+    }
+}
+
+/// The cells at all faces that hold all components.
+fn layers<K, const D: usize>(model: &Model<K, D>) -> Vec<Layer> {
+    let fixed = model.boundary.supports.iter().filter(|support| support.velocity == [Some(0.0); D]);
+    let layer = |support: &Support<D>| {
+        let axis = &model.grid.axes()[support.axis];
+        let cells = axis.cells();
+        let [face, end] = if support.upper { [cells, cells - 1] } else { [0, 1] };
+        Layer { axis: support.axis, face: axis.breakpoint(face), end: axis.breakpoint(end) }
+    };
+    fixed.map(layer).collect()
+}
+
+/// Relaxes the velocities of the points near fixed faces to those of their displacement `du`, m, in the step of the
+/// length `dt`, s. The points are still where they were at its start.
+pub fn relax<K, const D: usize>(model: &Model<K, D>, points: &mut Points<D>, du: &[Vector<D>], dt: f64) {
+    if model.wall_velocity == WallVelocity::Own {
+        return;
+    }
+    let (layers, degree) = (layers(model), model.grid.order() as i32);
+    let Points { x, motion: Some(motion), .. } = points else { return };
+    threads::change(&mut motion.v, 1, |p, v| {
+        let near = layers.iter().filter_map(|layer| Some((layer.thickness(), layer.depth(&x[p])?)));
+        let (mut thickness, mut others) = (f64::INFINITY, 1.0);
+        for (of_layer, depth) in near {
+            thickness = of_layer.min(thickness);
+            others *= 1.0 - (1.0 - depth).powi(degree);
+        }
+        let excess = v[0] - du[p] / dt;
+        let path = excess.norm() * dt / thickness;
+        v[0] -= excess * ((1.0 - others) * (RATE * path).min(1.0));
+    });
+}
+
+/// Kinetic energy, J, that points within a cell of a face which holds all components have by their velocities, beyond
+/// that of the motion `du`, m, which they make in the step of the length `dt`, over all ranks. Points that have hardly
+/// moved since the start do not count. `None` without such a face, or without inertia.
+pub fn excess<K, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    du: &[Vector<D>],
+    dt: f64,
+    halo: &dyn Halo,
+) -> Option<f64> {
+    let layers = layers(model);
+    let v = &points.motion.as_ref().filter(|_| !layers.is_empty())?.v;
+    let is_near = |p: &usize| {
+        let path = (points.u[*p] + du[*p]).norm();
+        let counts = |layer: &Layer| layer.depth(&points.x[*p]).is_some() && path > LEAST_PATH * layer.thickness();
+        layers.iter().any(counts)
+    };
+    let excess = |p: usize| 0.5 * points.mass[p] * (v[p].norm_squared() - (du[p] / dt).norm_squared());
+    let sum: Exact = (0..points.len()).filter(is_near).map(excess).collect();
+    Some(halo.total(&[sum])[0])
+}
