@@ -6,8 +6,6 @@ choice! {
     pub enum LimitedIndicator {
         /// Work done on the soft background.
         BackgroundWork = "background-work",
-        /// Force of the soft background under dead load.
-        BackgroundLoadShare = "background-load-share",
         /// Energy that the algorithm lost.
         EnergyLoss = "energy-loss",
         /// Noise of a history of a force.

@@ -94,8 +94,8 @@ fn a_background_that_carries_the_body_is_told() {
     scratch.direct(&["case.toml", "-q"]).expect(0);
     let usual = manifest(&scratch.path("case.out")).indicators["background-work"].clone();
     assert!(!usual.unusual && usual.value > 0.0 && usual.value < 1e-3, "{usual:?}");
-    let stiff = scratch.direct(&["case.toml", "--force", "--set", "solver.background=0.5"]).expect(0);
-    assert!(stiff.stderr.contains("unusual: background-work"), "{}", stiff.stderr);
+    let stiff = scratch.direct(&["case.toml", "--force", "--set", "solver.background=0.5"]).expect(82);
+    assert!(stiff.stderr.contains("background-work is"), "{}", stiff.stderr);
     // Of uniaxial strain under a load that grows from the first step to the second, E int eps:eps / 2 against 1.35 E of
     // the body.
     let share = manifest(&scratch.path("case.out")).indicators["background-work"].value;
