@@ -32,11 +32,11 @@ use bsmpm::boundary::Contact;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
+use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
-use bsmpm::step::walls::WallVelocity;
 
 /// The key of the mass matrix.
 pub const MASS: &str = "analysis.mass";

@@ -45,10 +45,10 @@ use crate::report::Report;
 use crate::words::{AnalysisType, Geometry, Side, Word};
 use bsmpm::boundary::Contact;
 use bsmpm::model::Regime;
+use bsmpm::model::WallVelocity;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
-use bsmpm::step::walls::WallVelocity;
 
 /// Coefficient of friction up to which faces and strips in contact were verified.
 const MOST_SHOWN_FRICTION: f64 = 1.0;
@@ -89,8 +89,8 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     let stages = stage::read_all((record, factor), bodies.as_deref(), time, report);
     let contacts = contacts(record, factor, report);
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
-    let mut gravity = gravity(record, (regime, end), report);
-    let water = water::read(record, (placed, gravity.as_ref()), (regime, end), report);
+    let mut gravity = gravity(record, regime, end, report);
+    let water = water::read(record, (placed, gravity.as_ref()), regime, end, report);
     let shaking =
         load::shaking(record, (regime, analysis.as_ref().map(|analysis| (analysis.end, analysis.dt))), report);
     let around = site::AroundStrip {
@@ -114,7 +114,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     let flow = flow::read(record, materials.as_deref(), (around, stages.as_deref()), report);
     let mut tractions = load::tractions(record, around, report);
     let mut point_loads = load::point_loads(record, around, report);
-    let mut initial = load::initial(record, (materials.as_deref(), made), (gravity.as_ref(), regime), report);
+    let mut initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), regime, report);
     if let Some(end) = end.filter(|_| load::is_unloaded(record)) {
         initial = None;
         load::grow((gravity.as_mut(), &mut tractions, &mut point_loads, &mut rigid), end, report);
@@ -352,7 +352,7 @@ fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Co
     Some(Contact { friction, lifts })
 }
 
-fn gravity(record: &Record, (regime, end): (Option<Regime>, Option<f64>), report: &mut Report<'_>) -> Option<Gravity> {
+fn gravity(record: &Record, regime: Option<Regime>, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {
     let table = record.record("gravity")?;
     let gravity = Gravity { acceleration: table.vector("acceleration")?, ramp: table.number("ramp")? };
     let Gravity { acceleration, ramp } = gravity;

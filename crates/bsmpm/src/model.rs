@@ -15,7 +15,6 @@ use crate::schedule::between;
 use crate::stabilisation::{Grouped, Groups, Stabilisation};
 use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
-use crate::step::walls::WallVelocity;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
 use crate::water::ambient::{Ambient, Span, StillWater};
@@ -41,6 +40,16 @@ pub enum Weighting {
     Mass,
     /// The points' reference volume, where a scene has materials of different density, or weightless ones.
     Volume,
+}
+
+/// Which velocity points within a cell of a fixed face keep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WallVelocity {
+    /// Their own, by Newmark's formula: the paper's.
+    #[default]
+    Own,
+    /// It relaxes to that of their motion, see [`walls`](crate::step::walls).
+    Relaxed,
 }
 
 /// Body force per mass that grows linearly over a ramp: weight along the last axis, and across it in a pseudo-static

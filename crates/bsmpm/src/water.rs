@@ -18,6 +18,7 @@ pub mod matrix;
 pub mod newton;
 pub mod nodes;
 pub mod observed;
+pub mod pore_pressure;
 pub mod residual;
 pub mod retention;
 pub mod saved;

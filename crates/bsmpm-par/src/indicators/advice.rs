@@ -1,10 +1,10 @@
 //! What an unusual value of an indicator means, and what to do then.
 
 use bsmpm::model::Regime;
+use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
-use bsmpm::step::walls::WallVelocity;
 use bsmpm_scene::{Case, Geometry};
 
 /// Poisson's ratio from which on material is nearly incompressible: the lid-driven square and the footing of

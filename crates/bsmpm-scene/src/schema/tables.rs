@@ -10,10 +10,10 @@ use crate::words::{
     Order, Pc, Purpose, Word,
 };
 use bsmpm::grid::extension::ExtendedSplines;
+use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
-use bsmpm::step::walls::WallVelocity;
 use std::ops::Bound::{Excluded, Included};
 
 /// The whole file.

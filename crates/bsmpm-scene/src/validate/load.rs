@@ -245,7 +245,8 @@ pub(super) fn increasing<'a>(
 pub(super) fn initial(
     root: &Record,
     (materials, bodies): (Option<&[NamedMaterial]>, Option<&[Body]>),
-    (gravity, regime): (Option<&Gravity>, Option<Regime>),
+    gravity: Option<&Gravity>,
+    regime: Option<Regime>,
     report: &mut Report<'_>,
 ) -> Option<Initial> {
     let record = root.record("initial");

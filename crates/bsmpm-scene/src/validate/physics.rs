@@ -11,10 +11,10 @@ use crate::report::Report;
 use crate::words::{AnalysisType, Measurement, Side, Word};
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
+use bsmpm::model::WallVelocity;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
-use bsmpm::step::walls::WallVelocity;
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Given;
 

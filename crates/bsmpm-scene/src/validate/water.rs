@@ -19,7 +19,8 @@ const GENTLE: f64 = 0.25;
 pub(super) fn read(
     root: &Record,
     (grid, gravity): (Option<&GridSpec>, Option<&Gravity>),
-    (regime, end): (Option<Regime>, Option<f64>),
+    regime: Option<Regime>,
+    end: Option<f64>,
     report: &mut Report<'_>,
 ) -> Option<Water> {
     let Some(record) = root.record("water") else {

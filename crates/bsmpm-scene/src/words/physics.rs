@@ -1,10 +1,10 @@
 //! Words of choices that the physics defines.
 
 use bsmpm::grid::extension::ExtendedSplines;
+use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
-use bsmpm::step::walls::WallVelocity;
 use bsmpm::water::flow::PermeabilityLaw;
 
 words! { MassMatrix {

@@ -9,13 +9,14 @@ mod near;
 mod neutral;
 mod outline;
 mod point;
+mod surroundings;
 mod terrain;
 
 pub use body::{MOTIONS, RigidBody, RigidState, overlapping};
 pub use extent::extents;
-pub use near::{Reaching, Surroundings};
 pub use outline::{Nearest, Outline, Sizes};
 pub use point::{Along, Grip};
+pub use surroundings::{Reaching, Surroundings};
 pub use terrain::Terrain;
 
 use crate::error::StepError;
@@ -373,7 +374,7 @@ impl<const D: usize> RigidContacts<D> {
             let (at, [touched, pushed, slipped, dissipated, work]) =
                 (&self.bodies[number], [0, 1, 2, 3, 4].map(|k| sums[5 * number + k]));
             let slip = if pushed > 0.0 { slipped / pushed } else { 0.0 };
-            let state = at.state(&motions[number], self.length, (slip, work));
+            let state = at.state(&motions[number], self.length, slip, work);
             let [near, penetration, advance] = [0, 1, 2].map(|k| most[3 * number + k]);
             // Where no point is near enough to be looked at, the least is that of the start.
             let gap = if near.is_finite() { -near } else { at.least }.max(0.0);

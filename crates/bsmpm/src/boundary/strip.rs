@@ -27,7 +27,7 @@ use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
 use crate::schedule::between;
 use crate::tensor::Vector;
-use crate::water::carried::PorePressure;
+use crate::water::pore_pressure::PorePressure;
 use grip::ContactState;
 use point::{LENGTHS, StripPoint, StripSums, contact_report};
 use std::collections::{BTreeMap, BTreeSet};

@@ -20,8 +20,9 @@ use crate::step::extension::Extension;
 use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
 use crate::tensor::Vector;
-use crate::water::carried::{self, PorePressure};
+use crate::water::carried;
 use crate::water::nodes::Pores;
+use crate::water::pore_pressure::PorePressure;
 use std::borrow::Cow;
 
 /// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
@@ -126,7 +127,7 @@ impl<const D: usize> Nodes<D> {
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
         let mut free: Vec<bool> =
             velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c))).collect();
-        let pore_pressure = PorePressure::of(model, (shape, points), volume, t + dt, halo);
+        let pore_pressure = carried::pore_pressure(model, (shape, points), volume, t + dt, halo);
         let rigid = match model.boundary.rigid.is_empty() {
             true => RigidContacts::default(),
             false => {
@@ -149,7 +150,7 @@ impl<const D: usize> Nodes<D> {
         let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
         let contacts = match model.boundary.has_contact() {
             true => {
-                let on_faces = |pores: &PorePressure<D>| pores.forces_on_faces(model, (shape, points), volume, halo);
+                let on_faces = |pores| carried::forces_on_faces(pores, model, (shape, points), volume, halo);
                 let water = pore_pressure.as_ref().map(on_faces);
                 let window = (&model.boundary, &model.grid);
                 Contacts::of(window, (shape, points), &free, (t, last), water.as_deref(), halo)

@@ -23,21 +23,11 @@
 
 use crate::boundary::Support;
 use crate::exact::Exact;
-use crate::model::Model;
+use crate::model::{Model, WallVelocity};
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::tensor::Vector;
 use crate::threads;
-
-/// Which velocity points within a cell of a fixed face keep.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum WallVelocity {
-    /// Their own, by Newmark's formula: the paper's.
-    #[default]
-    Own,
-    /// It relaxes to that of their motion, see the module.
-    Relaxed,
-}
 
 /// Rate of the relaxation (-), over the path of the excess velocity in cells. For the run-outs that chose it see
 /// `boundary.md`.

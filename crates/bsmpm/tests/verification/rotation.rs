@@ -5,10 +5,10 @@ use bsmpm::boundary::Support;
 use bsmpm::energy::Stored;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
+use bsmpm::model::WallVelocity;
 use bsmpm::observe::{self, Part};
 use bsmpm::points::Points;
 use bsmpm::step::mass::MassMatrix;
-use bsmpm::step::walls::WallVelocity;
 use bsmpm::tensor::Vector;
 use std::f64::consts::TAU;
 

@@ -7,8 +7,9 @@ use bsmpm::boundary::{Contact, Support};
 use bsmpm::grid::Shape;
 use bsmpm::model::Regime;
 use bsmpm::step::nodes::Nodes;
-use bsmpm::water::carried::PorePressure;
+use bsmpm::water::carried;
 use bsmpm::water::flow::{Motion, PermeabilityLaw};
+use bsmpm::water::pore_pressure::PorePressure;
 
 /// A square of 1 m with an excess pore pressure that is linear in the place, Pa, and a left face with friction; what
 /// `of` finds in the pressures that friction takes off.
@@ -32,7 +33,7 @@ fn found<T>(friction: f64, of: impl Fn(&PorePressure<2>, &Plane, &Shape<2>) -> T
 fn excess_pore_pressure_is_taken_off_the_normal_force_of_a_face() {
     let force = |pores: &PorePressure<2>, scene: &Plane, shape: &Shape<2>| -> f64 {
         let around = (shape, &scene.points);
-        let forces = pores.forces_on_faces(&scene.model, around, &scene.points.volume, &scene.halo());
+        let forces = carried::forces_on_faces(pores, &scene.model, around, &scene.points.volume, &scene.halo());
         forces.iter().step_by(2).sum()
     };
     let found = found(0.3, force).expect("it has friction");

@@ -3,8 +3,9 @@
 use super::ROUNDING;
 use super::RigidContacts;
 use super::body::{Pose, RigidBody, RigidState};
-use super::near::{Reaching, longest_edge, reach};
+use super::near::{longest_edge, reach};
 use super::point::{Grip, RigidPoint, tangents};
+use super::surroundings::Reaching;
 use crate::parallel::Halo;
 use crate::tensor::Vector;
 

@@ -6,7 +6,7 @@
 //! with: that of a blow is one of the step's length.
 
 use super::body::{MOTIONS, RigidBody, RigidState};
-use super::near::Surroundings;
+use super::surroundings::Surroundings;
 use crate::step::newmark::Newmark;
 use crate::tensor::Vector;
 use nalgebra::Matrix3;
@@ -37,7 +37,7 @@ pub(super) struct BodyInStep<const D: usize> {
 
 impl<const D: usize> BodyInStep<D> {
     /// With its motions as they are without the soil.
-    pub fn of(body: &RigidBody<D>, state: &RigidState, (t, dt): (f64, f64), around: &Surroundings<'_, D>) -> Self {
+    pub fn of(body: &RigidBody<D>, state: &RigidState, t: f64, dt: f64, around: &Surroundings<'_, D>) -> Self {
         let [before, after] = [t, t + dt].map(|t| body.pick(&state.moved, &body.on_path(t)));
         let zero = Vector::zeros();
         let still = Self {
@@ -106,7 +106,7 @@ impl<const D: usize> BodyInStep<D> {
 
     /// The state after the step of this `length` (s or pseudo-time), with what its free `motions` add to those that
     /// were predicted, what the material has slipped (m) and what work it was done (J).
-    pub fn state(&self, motions: &Vector<3>, length: f64, (slip, work): (f64, f64)) -> RigidState {
+    pub fn state(&self, motions: &Vector<3>, length: f64, slip: f64, work: f64) -> RigidState {
         let moved = self.predicted + motions;
         let mean = (moved - self.before.moved) / length;
         let (velocity, acceleration) = self.motion_after(&(moved - self.before.moved), length);

@@ -1,17 +1,15 @@
 //! Which points are near a rigid body in a step, how far from it, and what they start the step as.
 
-use super::body::{RigidBody, RigidState};
 use super::motion::BodyInStep;
 use super::point::{Grip, RigidPoint, along, tangents};
+use super::surroundings::{Reaching, Surroundings};
 use super::{CLOSE, PENALTY, RigidContacts};
 use crate::error::StepError;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
-use crate::points::Points;
-use crate::step::newmark::Newmark;
 use crate::tensor::Vector;
-use crate::water::carried::PorePressure;
+use crate::water::pore_pressure::PorePressure;
 
 /// Steps ahead of the meeting from which on material is near a body: it may be faster or slower than it starts.
 const MEETING: f64 = 2.0;
@@ -20,37 +18,6 @@ const SEEN: f64 = 1e-3;
 /// What a point reaches to a side at least and at most, over what it did at the start: large shear makes of a box what
 /// no material fills.
 const STRETCH: [f64; 2] = [0.25, 1.5];
-
-/// What tells how far points reach.
-#[derive(Clone, Copy)]
-pub struct Reaching<'a, const D: usize> {
-    /// the grid
-    pub grid: &'a Grid<D>,
-    /// the points
-    pub points: &'a Points<D>,
-    /// parts of a cell that the points of a material reach to each side at the start, at most
-    pub reach: &'a [f64],
-    /// volume per m^D of the grid at a place
-    pub weight: fn(&Vector<D>) -> f64,
-}
-
-/// What of the scene the bodies see.
-pub struct Surroundings<'a, const D: usize> {
-    /// the bodies, and what they carry
-    pub bodies: (&'a [RigidBody<D>], &'a [RigidState]),
-    /// the points on their grid
-    pub reaching: Reaching<'a, D>,
-    /// shape functions
-    pub shape: &'a Shape<D>,
-    /// m/s2  force per mass at the end of the step
-    pub body_force: Vector<D>,
-    /// components that nothing else holds
-    pub free: &'a [bool],
-    /// integration of inertia; `None` without
-    pub newmark: Option<Newmark>,
-    /// pore pressure that the soil carries, if any
-    pub pore_pressure: Option<&'a PorePressure<D>>,
-}
 
 impl<const D: usize> RigidContacts<D> {
     /// In a step from `t` to `t + dt`, with the statuses that the last displacement, `guess`, asks for; what touches as
@@ -79,7 +46,7 @@ impl<const D: usize> RigidContacts<D> {
         let mut moving = vec![0.0; if around.newmark.is_some() { around.reaching.grid.nodes() } else { 0 }];
         let mut near = vec![0.0; 2 * bodies.len()];
         for (number, (body, state)) in bodies.iter().zip(states).enumerate() {
-            let mut at = BodyInStep::of(body, state, (t, dt), around);
+            let mut at = BodyInStep::of(body, state, t, dt, around);
             let found = contacts.points.len();
             if body.acts {
                 at.least = contacts.gather((number, &at), (around, &young), dt);

@@ -1,0 +1,72 @@
+//! The pore pressure that the soil carries as a function of the place, from which all friction takes the part of normal
+//! forces that water carries.
+
+use crate::grid::{Shape, transfer};
+use crate::parallel::Halo;
+use crate::tensor::Vector;
+use std::ops::Range;
+
+/// Pore pressure of every node: along each axis linear, fitted to the points that the node sees.
+#[derive(Clone, Debug)]
+pub struct PorePressure<const D: usize> {
+    moments: Vec<f64>, // per node sum w, sum w p, and for each axis sum w x, sum w x^2, sum w p x
+}
+
+impl<const D: usize> PorePressure<D> {
+    const WIDTH: usize = 2 + 3 * D;
+
+    /// Of all nodes, fitted to points at `places` (m, from the grid's lower corner) with `weights` (m^D) and
+    /// `pressures` (Pa). A sum over the ranks.
+    pub fn fitted(shape: &Shape<D>, places: &[Vector<D>], weights: &[f64], pressures: &[f64], halo: &dyn Halo) -> Self {
+        let moments = |p: usize| moments_of(weights[p], &places[p], pressures[p]);
+        let moments = match D {
+            2 => halo.sum(&transfer::to_nodes(shape, |p| -> [f64; 8] { padded(&moments(p)) })),
+            _ => halo.sum(&transfer::to_nodes(shape, |p| -> [f64; 11] { padded(&moments(p)) })),
+        };
+        Self { moments }
+    }
+
+    /// Pa  at `x` (m, from the grid's lower corner), by the function of a node in the given axes; along the others it
+    /// is that of the middle of what the node sees.
+    pub(super) fn of_node(&self, node: usize, axes: Range<usize>, x: &Vector<D>) -> f64 {
+        let moments = &self.moments[Self::WIDTH * node..][..Self::WIDTH];
+        let (weight, value) = (moments[0], moments[1]);
+        if weight <= 0.0 {
+            return 0.0;
+        }
+        let along = |axis: usize| {
+            let [first, second, product] = [0, 1, 2].map(|k| moments[2 + 3 * axis + k] / weight);
+            rise([first, second, value / weight, product], x[axis])
+        };
+        (value / weight + axes.map(along).sum::<f64>()).max(0.0)
+    }
+
+    /// Pa  at `x` (m, from the grid's lower corner), the mean by `weights` of what nodes have there.
+    pub fn at(&self, weights: impl Iterator<Item = (usize, f64)>, x: &Vector<D>) -> f64 {
+        let (mut sum, mut whole) = (0.0, 0.0);
+        for (node, weight) in weights.filter(|(node, _)| self.moments[Self::WIDTH * node] > 0.0) {
+            sum += weight * self.of_node(node, 0..D, x);
+            whole += weight;
+        }
+        if whole > 0.0 { (sum / whole).max(0.0) } else { 0.0 }
+    }
+}
+
+/// What a point adds to the moments of a node.
+fn moments_of<const D: usize>(weight: f64, x: &Vector<D>, pressure: f64) -> Vec<f64> {
+    let along = x.iter().flat_map(|x| [weight * x, weight * x * x, weight * pressure * x]);
+    [weight, weight * pressure].into_iter().chain(along).collect()
+}
+
+fn padded<const N: usize>(numbers: &[f64]) -> [f64; N] {
+    std::array::from_fn(|k| numbers[k])
+}
+
+/// By how much the line through weighted points is higher at `x` than their mean: of `moments` per weight of x, x^2, y
+/// and x y. 0 where all have one place.
+fn rise([middle, second, mean, product]: [f64; 4], x: f64) -> f64 {
+    let variance = second - middle * middle;
+    let covariance = product - middle * mean;
+    let is_spread = variance > 1e-9 * (middle - x).powi(2);
+    if is_spread { covariance / variance * (x - middle) } else { 0.0 }
+}
