@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use bsmpm_io::frame::Frame;
 use bsmpm_io::manifest::Manifest;
 use serde::Serialize;
 
@@ -183,7 +184,7 @@ impl Trials<'_> {
     /// The elastic body with and without inertia, if that is sought: found now, unless it is there.
     ///
     /// # Errors
-    /// [`Error::NoStableState`] if it has no equilibrium.
+    /// [`Error::Run`] if it has no equilibrium under the least inertia that is tried.
     pub fn pushed(&self) -> Result<Option<PushedBody>, Error> {
         let Some((set, text)) = self.subject.pushed_elastic()? else { return Ok(None) };
         let still = self.output.join(self.elastic_trial()?.directory);
@@ -194,15 +195,24 @@ impl Trials<'_> {
         if outcome.state != RunState::Done {
             return Err(outcome.error("the elastic body under the least inertia".to_owned()));
         }
-        let [still, pushed] = [self.ground(&still, ELASTIC)?, self.ground(&directory, ELASTIC)?];
+        let [still, pushed] = [self.ground_of_elastic(&still)?, self.ground_of_elastic(&directory)?];
         Ok(Some(PushedBody { still, pushed, coefficient: self.subject.from }))
     }
 
-    /// How far the ground of a trial has moved at the end.
-    fn ground(&self, directory: &Path, value: f64) -> Result<MovedGround, Error> {
+    fn ground_of_elastic(&self, directory: &Path) -> Result<MovedGround, Error> {
+        let frame = self.last_frame(directory, ELASTIC)?;
+        self.ground(frame.as_ref(), directory)
+    }
+
+    /// The frame at the end of the trial of a value, or the last one before.
+    fn last_frame(&self, directory: &Path, value: f64) -> Result<Option<Frame>, Error> {
         let [_, end] = self.subject.times(value);
-        let frames = RunRecord::read(directory)?.frames(&[end])?;
-        let ground = frames.last().and_then(|frame| MovedGround::of(frame, &self.subject.counted));
+        Ok(RunRecord::read(directory)?.frames(&[end])?.pop())
+    }
+
+    /// How far the ground has moved by the last frame of the run in a directory.
+    fn ground(&self, frame: Option<&Frame>, directory: &Path) -> Result<MovedGround, Error> {
+        let ground = frame.and_then(|frame| MovedGround::of(frame, &self.subject.counted));
         ground.ok_or_else(|| Error::Usage {
             reason: format!(
                 "no material point that counts is in the last frame of {}: give a --region that has material in it",
@@ -256,9 +266,9 @@ impl Trials<'_> {
         let indicators = outcome.manifest.iter().flat_map(|manifest| &manifest.indicators);
         let failed = indicators.filter(|(_, indicator)| indicator.ends_run());
         let failed_indicators = failed.map(|(name, _)| name.clone()).collect();
-        let ground = self.ground(directory, factor)?;
-        let frames = RunRecord::read(directory)?.frames(&[whole])?;
-        let strains = frames.last().and_then(|frame| FieldName::PlasticStrain.values(frame));
+        let frame = self.last_frame(directory, factor)?;
+        let ground = self.ground(frame.as_ref(), directory)?;
+        let strains = frame.as_ref().and_then(|frame| FieldName::PlasticStrain.values(frame));
         let RunCost { cpu_seconds, wall_seconds, steps, iterations, cuts, .. } = outcome.cost;
         let before = self.beginning(factor).map_or(RunCost::default(), |state| state.cost);
         let elastic = self.beginning(factor).map_or(0.0, |state| state.elastic);

@@ -66,7 +66,7 @@ fn stub() {
     let output = after("--output").remove(0);
     let slips = factor >= behaviour(&folder, "loose", f64::INFINITY);
     let (code, loose) = if slips { (80, Some("block".to_owned())) } else { (code, None) };
-    write_run(&case, arguments.clone(), Path::new(&output), 7.5e-3 * growth, (code, loose));
+    write_run(&case, arguments.clone(), Path::new(&output), 7.5e-3 * growth, code, loose);
     std::process::exit(i32::from(code));
 }
 
@@ -76,7 +76,8 @@ fn write_run(
     argv: Vec<String>,
     directory: &Path,
     displacement: f64,
-    (code, loose): (u8, Option<String>),
+    code: u8,
+    loose: Option<String>,
 ) {
     let told = ManifestCase::new("slope.toml", &case.title, "plane-strain", case.text.clone());
     let mut manifest = Manifest::begin("0.1.0", argv, told);
