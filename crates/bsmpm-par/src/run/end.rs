@@ -79,7 +79,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Ends the run with a frame.
     pub(super) fn close(mut self, status: Status, code: u8) -> u8 {
         self.frame_if_new();
-        self.judge_itself();
+        // A run that came to its end has its code by its indicators.
+        if ![exit::DONE, exit::CHECK, exit::INDICATOR].contains(&code) {
+            self.judge_itself();
+        }
         self.account();
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.close(status, code));
         self.require(written);
