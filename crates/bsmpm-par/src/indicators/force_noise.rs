@@ -1,8 +1,8 @@
 //! Noise of the histories of forces: how much they jump from step to step.
 //!
 //! Fourth differences of five rows that are equal steps apart leave of a smooth curve next to nothing: of a wave of 12
-//! steps 0.9 % of its amplitude. Of values with independent errors of the standard deviation s they have 70 s². Their
-//! median tells s whatever single kinks a curve has: 0.6745 is that of a normal distribution.
+//! steps 0.9 % of its amplitude. Of values with independent errors of the standard deviation s they have 70 s². The
+//! median of their magnitudes is 0.6745 sqrt(70) s for a normal distribution. Single kinks of a curve hardly change it.
 
 use bsmpm::model::Regime;
 use bsmpm_io::manifest::Indicator;
@@ -10,7 +10,7 @@ use bsmpm_io::table::Columns;
 use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{Case, History, Quantity};
 
-/// Fewer differences tell nothing.
+/// Fewer differences are not judged.
 const LEAST: usize = 8;
 /// Steps that differ by less are equal.
 const EQUAL: f64 = 1e-6;

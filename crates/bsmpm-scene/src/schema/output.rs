@@ -26,7 +26,7 @@ pub(super) static OUTPUT: Table = Table {
             "accept",
             Choices(LimitedIndicator::WORDS),
             Optional,
-            "indicators of the run that may be beyond their limits; others end it with exit code 82",
+            "indicators that may be beyond their limits; without their names here the run ends with exit code 82 then",
         ),
         key(
             "checkpoint",

@@ -44,15 +44,16 @@ pub fn strips<K: Kinematics<D>, const D: usize>(
         }
     };
     let divided = case.divided_at(t);
-    let rubs = |contact: Option<StripContact<3>>| {
+    let with_divided_friction = |contact: Option<StripContact<3>>| {
         contact.map(|StripContact { mut law, inward }| {
             law.friction /= divided;
             StripContact { law, inward: vector::<D, 3>(inward.into()) }
         })
     };
     let footing = case.footing.iter();
-    let footing = footing.map(|of| strip(&of.site, &of.path, (of.base, rubs(of.contact))));
-    let prescribed = case.prescribed.iter().map(|of| strip(&of.site, &of.path, (of.base, rubs(of.contact))));
+    let footing = footing.map(|of| strip(&of.site, &of.path, (of.base, with_divided_friction(of.contact))));
+    let prescribed =
+        case.prescribed.iter().map(|of| strip(&of.site, &of.path, (of.base, with_divided_friction(of.contact))));
     let acts = |number: usize| case.acts_since(Acting::Strip(number), t).is_some();
     let held = |(number, strip): (usize, Strip<D>)| if acts(number) { strip } else { Strip { penalty: 0.0, ..strip } };
     let mut strips: Vec<Strip<D>> = footing.chain(prescribed).enumerate().map(held).collect();

@@ -10,7 +10,7 @@ choice! {
         ForceNoise = "force-noise",
         /// Distance by which an interface has left its grid line.
         InterfaceShift = "interface-shift",
-        /// The same of soils of unlike permeability.
+        /// The same for soils of different permeability.
         PermeabilityShift = "permeability-shift",
         /// Depth of material in a rigid body.
         RigidPenetration = "rigid-penetration",
