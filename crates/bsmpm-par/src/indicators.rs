@@ -261,12 +261,12 @@ fn of_background(case: &Case, summary: &Summary) -> [Option<(&'static str, Indic
         ("background-load-share", Indicator::new(shares, "-", meaning, [0.0, LOAD_SHARE]))
     });
     if case.limit_load.is_some() {
-        let meaning = "work done on the soft background, over the magnitudes of the works of all internal nodal forces, in the \
-                       last step";
+        let meaning = "work done on the soft background in the last step, over the magnitudes of the works of the nodal \
+                       internal forces, or of the stresses where those are larger";
         return [summary.last_background.map(|shares| work(shares.work, meaning)), load];
     }
-    let meaning =
-        "work done on the soft background, over the magnitudes of the works of all internal nodal forces, of all steps";
+    let meaning = "work done on the soft background in all steps, over the magnitudes of the works of the nodal internal \
+                   forces, or of the stresses where those are larger";
     let part = summary.background_work.zip(summary.internal_work);
     let share = |(soft, all): (f64, f64)| if soft == 0.0 { 0.0 } else { soft / all };
     [part.map(|part| work(share(part), meaning)), load]

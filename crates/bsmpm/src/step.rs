@@ -96,6 +96,9 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let mut surface = Surface { traction, position, pressure, anchors, bodies, ..points.surface.clone() };
     let (answers, state) = commit::answers(model, &found.trial, points, halo)?;
     report.second_order_works = commit::second_order_works(model, points, &answers, halo);
+    if let Some([_, internal]) = &mut report.background {
+        *internal = internal.max(commit::stress_work(&found.trial, points, &answers, halo));
+    }
     let accounts = model.balances_energy || model.regime == Regime::Dynamic;
     let draft = accounts.then(|| Draft::of(&problem, (&found, &answers), (t, dt)));
     if halo.rejects() {

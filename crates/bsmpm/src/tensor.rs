@@ -31,6 +31,15 @@ impl Symmetric {
         Tensor::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
     }
 
+    /// The double contraction `a : b`.
+    #[inline]
+    pub fn double_dot(&self, other: &Self) -> f64 {
+        let product = |i: usize| self.0[i] * other.0[i];
+        let normal = product(0) + product(1) + product(2);
+        let shear = product(3) + product(4) + product(5);
+        normal + 2.0 * shear
+    }
+
     /// Every component multiplied by `factor`.
     #[inline]
     pub fn scaled(&self, factor: f64) -> Self {

@@ -177,7 +177,7 @@ fn edges() -> Vec<Row> {
 fn counts() -> Vec<Row> {
     vec![
         row("N07", "one point a cell, bar pulled to 1.5 l: error of its stress", AtMost(0.05),
-            || points::stretched(1, 1.5)).or_refused().fails(GRIP),
+            || points::stretched(1, 1.5)).or_refused(),
         row("N07", "one point a cell, bar pulled to 3 l: the same", AtMost(0.05),
             || points::stretched(1, 3.0)).or_refused().fails(GRIP),
         row("N07", "two points a cell and axis, bar pulled to 3 l: the same", AtMost(0.05),

@@ -58,6 +58,12 @@ impl Run {
                 let failure = self.manifest().failure.expect("a reason");
                 Found::Told(code, format!("t = {:.4}: {}", failure.time, first_sentence(&failure.reason)))
             }
+            Some(82) => {
+                all_finite(&self.directory());
+                let failed = self.manifest().indicators.into_iter().find(|(_, indicator)| indicator.failed);
+                let (name, indicator) = failed.expect("an indicator beyond its limit");
+                Found::Told(82, format!("{name} is {:.2}: {}", indicator.value, indicator.meaning))
+            }
             Some(65) => Found::Told(65, first_sentence(&self.output.stderr)),
             code => Found::Broken(format!("exit code {code:?}: {}", self.output.stderr)),
         }

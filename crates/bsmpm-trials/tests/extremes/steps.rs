@@ -114,7 +114,10 @@ pub fn collapse(dt: f64, end: f64) -> Found {
     let error = (way(&run) / reference - 1.0).abs();
     let advance = run.manifest().indicators.remove("step-advance").filter(|indicator| indicator.unusual);
     match advance {
-        Some(told) => Found::Told(0, format!("step-advance is {:.2}: {}; figure {error:.3}", told.value, told.meaning)),
+        Some(told) => Found::Told(
+            if told.failed { 82 } else { 0 },
+            format!("step-advance is {:.2}: {}; figure {error:.3}", told.value, told.meaning),
+        ),
         None => run.found(|run| Found::Figure(error, run.effort())),
     }
 }

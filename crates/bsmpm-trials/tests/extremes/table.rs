@@ -33,7 +33,7 @@ pub enum Limit {
 pub enum Found {
     /// a number, and what its reader should know
     Figure(f64, String),
-    /// no number, but a reason: exit code 65 or 80 of the program, or 0 with a warning
+    /// no number, but a reason: exit code 65, 80 or 82 of the program, or 0 with a warning
     Told(i32, String),
     /// neither: a crash, a hang, numbers that are none
     Broken(String),
@@ -126,7 +126,7 @@ impl Row {
                 Limit::Same => *value == 0.0,
                 Limit::Reported => true,
             },
-            Found::Told(code, reason) => self.may_refuse && [0, 65, 80].contains(code) && !reason.is_empty(),
+            Found::Told(code, reason) => self.may_refuse && [0, 65, 80, 82].contains(code) && !reason.is_empty(),
             Found::Broken(_) => false,
         }
     }

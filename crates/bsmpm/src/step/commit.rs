@@ -22,7 +22,7 @@ use crate::step::nodes::Nodes;
 use crate::step::smooth;
 use crate::step::trial::Trial;
 use crate::step::walls;
-use crate::tensor::{Symmetric, Vector};
+use crate::tensor::{Symmetric, Tensor, Vector};
 use crate::threads;
 use crate::water::saved;
 use rayon::prelude::*;
@@ -171,6 +171,21 @@ pub fn second_order_works<K, const D: usize>(
     let of = |p: usize| answers[p].second_order_works.map(|dense| points.volume[p] * dense);
     let total = has_second_order_works(model).then(|| halo.total(&threads::sums(points.len(), of)))?;
     Some([total[0], total[1]])
+}
+
+/// Magnitudes of the works of the points' stresses in a step over all points of all ranks, J: `Σ V0 |τ : Δε|`. Unlike the
+/// works of nodal forces, these do not vanish in a body whose internal forces balance at each node.
+pub fn stress_work<K: Kinematics<D>, const D: usize>(
+    trial: &Trial<K, D>,
+    points: &Points<D>,
+    answers: &[Answer],
+    halo: &dyn Halo,
+) -> f64 {
+    let of = |p: usize| {
+        let strain = Symmetric::of(&(trial.dF(p) - Tensor::identity()));
+        [points.volume[p] * answers[p].tau.double_dot(&strain).abs()]
+    };
+    halo.total(&threads::sums(points.len(), of))[0]
 }
 
 /// Saves the converged step, which the constitution has answered so, with the laws' state after it, into the points.
