@@ -113,7 +113,8 @@ impl IndicatorState {
         let energy = recorder.books().map(|books| {
             let now = Stored::of(model, (points, t), halo);
             let numbers = [books.flows.external.abs(), books.flows.plastic, books.start, now.kinetic + now.elastic];
-            let largest = numbers.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+            let so_far = budget.map_or(f64::MIN_POSITIVE, |budget| budget.largest);
+            let largest = numbers.into_iter().fold(so_far, f64::max);
             Energy { closure: books.closure(now).abs() / largest, loss: books.flows.numerical() / largest }
         });
         let water = PoreWater::of(model, points, t).and_then(|water| water.balance(halo)).map(f64::abs);

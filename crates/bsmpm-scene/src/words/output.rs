@@ -6,6 +6,8 @@ choice! {
     pub enum LimitedIndicator {
         /// Work done on the soft background.
         BackgroundWork = "background-work",
+        /// Energy that the algorithm lost.
+        EnergyLoss = "energy-loss",
         /// Noise of a history of a force.
         ForceNoise = "force-noise",
         /// Distance by which an interface has left its grid line.
