@@ -63,6 +63,9 @@ use crate::threads;
 use crate::water::{carried, work};
 use std::ops::AddAssign;
 
+/// Strain that is nothing but round-off.
+const ROUND_OFF: f64 = 1e-12;
+
 /// Energy that went somewhere in a step, or in all steps so far, J; see the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flows<T = f64> {
@@ -280,7 +283,8 @@ impl Draft {
         // Where loads grow in the first step, forces at its end do up to twice the work that is counted by their mean:
         // of friction and dashpots half is left out of the bound on what is made.
         external -= &rubbed;
-        let mut sums = vec![external, own.plastic.clone(), damped, moving.clone(), strained];
+        let round_off = round_off(model, points);
+        let mut sums = vec![external, own.plastic.clone(), damped, moving.clone(), strained, round_off];
         if model.balances_energy {
             own.transfer -= &moving;
             own.smoothing -= &elastic(model, points, t + dt);
@@ -290,16 +294,24 @@ impl Draft {
         // The loads' points are the same on every rank.
         let (loads, loads_grown) = load::work(&model.boundary.loads, (&points.surface, surface), (t, dt));
         let stored = Stored { kinetic: sums[3], elastic: sums[4] };
-        let turnover = Turnover { external: sums[0] + loads, plastic: sums[1], damped: sums[2], stored };
+        let turnover =
+            Turnover { external: sums[0] + loads, plastic: sums[1], damped: sums[2], stored, round_off: sums[5] };
         let flows = model.balances_energy.then(|| {
             let mut flows = Flows::default();
-            flows.each().into_iter().zip(&sums[5..]).for_each(|(flow, sum)| *flow = *sum);
+            flows.each().into_iter().zip(&sums[6..]).for_each(|(flow, sum)| *flow = *sum);
             flows.external += loads;
             flows.integration -= loads_grown;
             flows
         });
         (flows, turnover)
     }
+}
+
+/// Energy of a strain that is nothing but round-off.
+fn round_off<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Exact {
+    let young: Vec<f64> = model.materials.iter().map(|material| material.elastic().young).collect();
+    let of = |p: usize| points.volume[p] * young[usize::from(points.material[p])];
+    threads::sum(points.len(), |p| of(p) * ROUND_OFF.powi(2))
 }
 
 fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
