@@ -187,3 +187,17 @@ fn a_footing_that_carries_a_load_has_the_factor_of_prandtls_limit() {
         assert!((1.0..1.075).contains(&over), "{stage:?}: {factor}");
     }
 }
+
+/// A slope of 1 in 2, 10 m high, that a block of 80 kN/m, 4 m wide, stands on and may move in every way. A block that
+/// does not tilt leaves 1.336, a traction of 20 kPa in its place 1.374.
+#[test]
+fn a_slope_has_the_factor_of_the_load_of_a_free_block_on_it() {
+    let ground = ["analysis.end=1", "analysis.steps=10", "grid.upper=[40, 12]", "boundary.right=roller"];
+    let slope = "body=[{ material = \"soil\", polygon = [[0, 0], [32, 0], [12, 10], [0, 10]], points_per_cell = 3 }]";
+    let block = "rigid=[{ name = \"block\", polygon = [[4, 10], [8, 10], [8, 12], [4, 12]], friction = 0.3, \
+                 free = [\"x\", \"y\", \"rotation\"], force = [0, -80e3] }]";
+    let set = [&ground[..], &[slope, block, "history=[{ quantity = \"max-displacement\" }]"]].concat();
+    let factor = estimate(&found(SLOPE, ((1.25, 1.45), None), &set));
+    println!("{factor}");
+    assert!((1.33..1.39).contains(&factor), "{factor}");
+}
