@@ -12,7 +12,7 @@ const NEAR: f64 = 1.0 - 1e-6;
 /// Part of the sum of two distances below which they are equal.
 const EQUAL: f64 = 1e-6;
 /// Parts of the shortest cell by which strips may miss a common plane, and motions differ, by rounding.
-const ROUNDING: f64 = 1e-6;
+pub(crate) const ROUNDING: f64 = 1e-6;
 /// The same of the cosine between two normals.
 const PARALLEL: f64 = 1e-9;
 
@@ -90,7 +90,8 @@ pub(crate) fn apart_at_corner<const D: usize>(
     Some(times.map(both).fold(0.0, f64::max)).filter(|apart| *apart > ROUNDING * edge)
 }
 
-fn holds_all<const D: usize>(strip: &Strip<D>) -> bool {
+/// Whether a strip holds all components of the soil's motion.
+pub(crate) fn holds_all<const D: usize>(strip: &Strip<D>) -> bool {
     strip.normal.is_none() && strip.contact.is_none()
 }
 

@@ -4,7 +4,7 @@ use super::place::is_in;
 use crate::case::{Acting, Case};
 use crate::record::Record;
 use crate::report::Report;
-use crate::surfaces::transition::{apart_at_corner, meet};
+use crate::surfaces::transition::{ROUNDING, apart_at_corner, holds_all, meet};
 use crate::surfaces::{self, name_of_strip};
 use crate::words::Geometry;
 use bsmpm::boundary::{RigidBody, Strip};
@@ -37,6 +37,8 @@ enum Other {
         apart: f64,
         /// m  the farther of their motions along their surfaces
         along: f64,
+        /// m  largest difference of their motions along their surfaces, if both hold the soil there
+        sliding: f64,
         /// m  an edge of the cells there
         edge: f64,
     },
@@ -105,6 +107,14 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
             );
             record.error("from", message, report);
         }
+        Other::Strip { sliding, edge, .. } if sliding > ROUNDING * edge => {
+            let message = format!(
+                "{other} meets {name}, both hold the soil along their surface, and their motions along it differ by \
+                 {sliding:.3e} m. The soil cannot follow both. Let one of them hold the normal component only, or leave a cell \
+                 between them."
+            );
+            record.error("from", message, report);
+        }
         Other::Strip { along, edge, .. } if along > ALONG * edge => {
             let message = format!(
                 "{other} meets {name} and moves differently, and one of them moves {along:.3} m along its surface (at most \
@@ -150,13 +160,15 @@ fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meetin
             }
             let other = &strips[number];
             let apart = largest(&[of, other], |t| of.path.at(t) - other.path.at(t));
-            let along = [of, other].map(|strip| {
-                let normal = both[0].normal;
-                largest(&[strip], |t| strip.path.at(t) - normal * normal.dot(&strip.path.at(t)))
-            });
+            let in_plane = |motion: Vector<D>| motion - both[0].normal * both[0].normal.dot(&motion);
+            let along = [of, other].map(|strip| largest(&[strip], |t| in_plane(strip.path.at(t))));
+            let sliding = match holds_all(of) && holds_all(other) {
+                true => largest(&[of, other], |t| in_plane(of.path.at(t) - other.path.at(t))),
+                false => 0.0,
+            };
             let act_together = both[0].since == both[1].since;
             let (along, edge) = (along[0].max(along[1]), edge(&of.points[0].x, &grid));
-            let other = Other::Strip { number, act_together, apart, along, edge };
+            let other = Other::Strip { number, act_together, apart, along, sliding, edge };
             found.push(Meeting { strip, other });
         }
         for (number, body) in bodies.iter().enumerate() {

@@ -173,6 +173,14 @@ fn motions_that_the_rule_does_not_cover_are_refused_by_name() {
     let sideways = "prescribed.0.path=[[0.2, 0.0, 0.0], [1.0, 0.3, -0.02]]";
     let output = scratch.direct(&["case.toml", "--check", "--set", sideways]).expect(65);
     output.says_once("prescribed.1 meets prescribed.0 and moves differently");
+    // Both hold the soil along the plane: a strip that slides by 0.04 cells had up to twice its limit load, one that
+    // slides by 0.16 cells a hundred times as much.
+    let rough = changed(&changed(TRAPDOOR, "CELL", "0.25"), "components = \"normal\"\n", "");
+    scratch.write("rough.toml", rough);
+    let sliding = "prescribed.0.path=[[0.2, 0.0, 0.0], [1.0, 0.01, 0.0]]";
+    let output = scratch.direct(&["rough.toml", "--check", "--set", sliding]).expect(65);
+    output.says_once("prescribed.1 meets prescribed.0, both hold the soil along their surface");
+    scratch.direct(&["case.toml", "--check", "--set", sliding]).expect(0);
     let rigid =
         "\n[[rigid]]\nname = \"block\"\nfriction = 0.0\npolygon = [[1.0, -0.5], [6.0, -0.5], [6.0, 0.0], [1.0, 0.0]]\n";
     let text = changed(TRAPDOOR, "CELL", "0.25");
