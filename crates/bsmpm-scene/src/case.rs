@@ -122,6 +122,19 @@ impl Case {
         faces.chain(strips.map(|contact| contact.law.friction)).chain(rigid).any(|friction| friction > 0.0)
     }
 
+    /// Cells across the width of the footing in quasi-static analysis of ground that yields, of a half at a face of the
+    /// grid across both halves; `None` for plates in 3-D, and where the case seeks a limit load, which is extrapolated.
+    pub fn cells_across_footing(&self) -> Option<f64> {
+        let yields = self.bodies.iter().any(|body| self.materials[body.material].material.yields());
+        let may_fail = yields && self.analysis.kind == AnalysisType::QuasiStatic && self.limit_load.is_none();
+        let ends = self.footing.as_ref().filter(|_| may_fail)?.site.ends()?;
+        let [from, to] = ends.map(|end| end[0]);
+        let axis = &self.grid.axes[0];
+        let is_half = [from, to].into_iter().any(|x| x == axis.lower() || x == axis.lower() + axis.length());
+        let width = (to - from).abs() * if is_half { 2.0 } else { 1.0 };
+        Some(width / axis.shortest())
+    }
+
     /// Takes over the repeated breakpoints of a run that goes on, whatever the program would place today.
     pub fn keep_lines(&mut self, lines: [Vec<Line>; 3]) {
         if self.grid.lines == lines {

@@ -57,7 +57,7 @@ impl Case {
     }
 
     /// Bodies of every connected piece of material.
-    fn pieces(&self) -> Vec<Vec<usize>> {
+    pub(crate) fn pieces(&self) -> Vec<Vec<usize>> {
         let bounds: Vec<[[f64; 3]; 2]> = self.bodies.iter().map(|body| body.region.corners()).collect();
         pieces(&bounds, self.grid.dims(), ROUNDING * self.grid.shortest())
     }

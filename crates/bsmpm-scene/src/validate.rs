@@ -1,5 +1,6 @@
 //! The rules between keys: a record whose values fit one by one becomes a valid case, or errors.
 
+mod approach;
 mod axisymmetric;
 mod body;
 mod element;
@@ -172,6 +173,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     side::of_pressures(&mut case, record, report);
     body::warn_of_overlap(&case, report);
     gap::check(&case, report);
+    approach::check(&case, report);
     solver::of_case(&mut case, record, report);
     physics::walls(&mut case, record, report);
     solver::warn_of_background(&case, report);

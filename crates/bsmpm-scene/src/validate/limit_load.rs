@@ -246,7 +246,7 @@ fn warn_of_averages(case: &Case, report: &mut Report<'_>) {
     if let Some(named) = case.materials.iter().find(is_loose) {
         report.warn(format!(
             "stabilisation.method: \"consistent-f-bar\" is wrong for material.{}, which dilates and has next to no cohesion: the \
-             bearing capacity of a smooth strip was 32 % too low. Use \"none\" with points_per_cell = 2, or analysis.purpose = \
+             bearing capacity of strips was 32 % too low to 42 % too high. Use \"none\" with points_per_cell = 2, or analysis.purpose = \
              \"limit-load\".",
             named.name
         ));

@@ -246,3 +246,41 @@ fn strength_reduction_names_the_friction_that_it_divides() {
     output.says_once("rigid.0.friction = 0.25 (strength_reduction.factor = 2)");
     assert!(!output.stderr.contains("it does nothing") && !output.stdout.contains("it does nothing"));
 }
+
+/// Two blocks 0.4 m apart, one of which moves: the other one moves from 0.23 s on, as splines reach 1.5 cells of 0.1 m, and
+/// would be touched at 0.4 s.
+const APPROACHING: &str = r#"
+geometry = "plane-strain"
+analysis = { type = "dynamic", end = 0.5, dt = 0.002 }
+grid = { lower = [0.0, 0.0], upper = [4.0, 4.0], cell = 0.1 }
+material.rubber = { model = "hencky", young = "1 MPa", poisson = 0.3, density = 1000 }
+[[body]]
+material = "rubber"
+box = { lower = [1.0, 1.0], upper = [1.5, 1.5] }
+points_per_cell = 3
+velocity = [1.0, 0.0]
+[[body]]
+material = "rubber"
+box = { lower = [1.9, 1.0], upper = [2.4, 1.5] }
+points_per_cell = 3
+"#;
+
+#[test]
+fn bodies_that_approach_each_other_are_warned_of_with_the_distance() {
+    let scratch = Scratch::with_case(APPROACHING);
+    let warned = |set: &[&str]| {
+        let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+        scratch.direct(&[&["case.toml", "--check"], &set[..]].concat()).expect(0).stdout
+    };
+    let near = "body.0 and body.1 approach each other, and come within a cell at about t = 0.30";
+    assert!(warned(&[]).contains(near), "{}", warned(&[]));
+    assert!(warned(&[]).contains("about 1.5 cells (1.500e-1 m)"));
+    for apart in ["body.0.velocity=[-1, 0]", "body.1.velocity=[1, 0]", "body.0.velocity=[0, 2]", "analysis.end=0.2"] {
+        assert!(!warned(&[apart]).contains("approach"), "{apart}");
+    }
+    // One falls onto the other, which lies on the bottom.
+    let falls = ["gravity={ acceleration = [0, -9.81] }", "boundary.bottom=fixed", "body.0.velocity=[0, 0]"];
+    let below = "body.1.box={ lower = [0.5, 0], upper = [2, 0.5] }";
+    assert!(warned(&[&falls[..], &[below]].concat()).contains("approach each other"));
+    assert!(!warned(&falls).contains("approach each other"));
+}
