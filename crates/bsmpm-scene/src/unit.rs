@@ -103,6 +103,38 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 10] = [
     (Dimension::Force, &[("N", Ten(0)), ("kN", Ten(3)), ("MN", Ten(6))]),
 ];
 
+/// Other names of units, as people write them.
+const ALIASES: [(&str, &str); 20] = [
+    ("sec", "s"),
+    ("secs", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("mins", "min"),
+    ("minute", "min"),
+    ("minutes", "min"),
+    ("hr", "h"),
+    ("hrs", "h"),
+    ("hour", "h"),
+    ("hours", "h"),
+    ("days", "day"),
+    ("weeks", "week"),
+    ("yr", "year"),
+    ("yrs", "year"),
+    ("years", "year"),
+    ("m/d", "m/day"),
+    ("cm/d", "cm/day"),
+    ("mm/d", "mm/day"),
+    ("m/yr", "m/year"),
+];
+
+/// Units of stress that are read, but not offered.
+const OLDER_STRESSES: (Dimension, &[(&str, Worth)]) =
+    (Dimension::Stress, &[("bar", Ten(5)), ("kgf/cm2", Times(98_066.5)), ("tf/m2", Times(9806.65))]);
+
+/// Masses per area, which some write for a stress, and the unit of force per area that is meant.
+const MASSES_PER_AREA: [(&str, &str); 4] =
+    [("t/m2", "tf/m2"), ("kg/cm2", "kgf/cm2"), ("kg/m2", "kPa"), ("ton/m2", "tf/m2")];
+
 /// The dimensions that have units, in the order of messages.
 pub(crate) fn dimensions() -> impl Iterator<Item = Dimension> {
     UNITS.iter().map(|(dimension, _)| *dimension)
@@ -210,10 +242,15 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
         return Err(format!("\"{written}\" has no unit{units}; a number without one is written without quotes"));
     }
     let plain = unit.replace('²', "2").replace('³', "3").replace(['µ', 'μ'], "u").replace('^', "").replace('°', "deg");
+    if let Some((mass, force)) = MASSES_PER_AREA.iter().find(|(mass, _)| *mass == plain) {
+        return Err(format!("\"{written}\": `{mass}` is a mass per area, and no stress. Write the force: `{force}`"));
+    }
+    let alias = ALIASES.iter().find(|(alias, _)| *alias == plain);
+    let plain = alias.map_or(plain, |(_, name)| (*name).to_owned());
     let known = |(dimension, units): &(Dimension, &'static [(&'static str, Worth)])| {
         units.iter().find(|(name, _)| *name == plain).map(|(_, worth)| (*dimension, *worth))
     };
-    let Some((dimension, worth)) = UNITS.iter().find_map(known) else {
+    let Some((dimension, worth)) = UNITS.iter().chain([&OLDER_STRESSES]).find_map(known) else {
         let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
         let near = hint(&plain, all.flat_map(|(_, units)| units.iter().map(|(name, _)| *name)));
         return Err(format!("\"{written}\": `{}` is no known unit{units}{near}", crate::report::shortened(unit)));
@@ -313,6 +350,13 @@ mod tests {
             ("20 year", Time, 631_152_000.0),
             ("60 d", Time, 5_184_000.0),
             ("1 day", Time, 86_400.0),
+            ("3 days", Time, 259_200.0),
+            ("2 hours", Time, 7200.0),
+            ("2 years", Time, 2.0 * 365.25 * 86_400.0),
+            ("30 sec", Time, 30.0),
+            ("2 bar", Stress, 2e5),
+            ("1 kgf/cm2", Stress, 98_066.5),
+            ("10 tf/m^2", Stress, 98_066.5),
             ("2 week", Time, 1_209_600.0),
             ("1e-9 m/s", Velocity, 1e-9),
             ("10 mm/h", Velocity, 10.0 / 3.6e6),
@@ -346,6 +390,8 @@ mod tests {
             ("5 m", Number, "unit of length, but this is a pure number"),
             ("5", Length, "has no unit"),
             ("5 KPa", Stress, "did you mean `kPa`?"),
+            ("5 t/m2", Stress, "is a mass per area, and no stress. Write the force: `tf/m2`"),
+            ("5 kg/cm2", Stress, "Write the force: `kgf/cm2`"),
             ("5 furlong", Length, "no known unit (m, cm"),
             ("five m", Length, "no number with a unit"),
             ("nan m", Length, "no number"),

@@ -7,8 +7,8 @@ use std::collections::HashSet;
 /// A case on `grid` with `bodies`, the keys of a body each, and `n` points per cell.
 fn try_case(grid: &str, bodies: &[&str], n: usize) -> Result<Case, Vec<Error>> {
     let mut text = format!(
-        "geometry = \"plane-strain\"\n[analysis]\ntype = \"dynamic\"\nend = 1\ndt = 1\n[grid]\norder = \"linear\"\n{grid}\n\
-         [material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n[gravity]\nacceleration = [0, -10]\n"
+        "geometry = \"plane-strain\"\n[analysis]\ntype = \"dynamic\"\nend = 1\ndt = 1\n[grid]\ndegree = \"linear\"\n{grid}\n\
+         [material.m]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n[gravity]\nacceleration = [0, -10]\n"
     );
     for body in bodies {
         text += &format!("[[body]]\nmaterial = \"m\"\npoints_per_cell = {n}\n{body}\n");
@@ -193,7 +193,7 @@ fn walls_thinner_than_points_lie_apart_are_warned_of() {
 
 #[test]
 fn a_ball_on_the_axis_is_what_a_box_leaves_of_a_circle() {
-    let circle = "circle = { center = [0, 9], radius = 4 }";
+    let circle = "circle = { centre = [0, 9], radius = 4 }";
     let half = format!("{circle}\nsubtract = [{{ box = {{ lower = [-5, 0], upper = [0, 20] }} }}]");
     let case = case(METRES, &[&half], 3);
     assert!((case.bodies[0].area() / (8.0 * std::f64::consts::PI) - 1.0).abs() < 1e-13);
@@ -220,7 +220,7 @@ fn circles_and_rings() {
         }
     }
     let ring =
-        "circle = { center = [20, 10], radius = 6 }\nsubtract = [{ circle = { center = [20, 10], radius = 2.5 } }]";
+        "circle = { centre = [20, 10], radius = 6 }\nsubtract = [{ circle = { centre = [20, 10], radius = 2.5 } }]";
     let case = case(METRES, &[ring], 3);
     assert!((case.bodies[0].area() / (pi * (36.0 - 6.25)) - 1.0).abs() < 1e-12);
     assert!(verify(&case, 1e-12).iter().all(|s| (2.5..6.0).contains(&(s.x[0] - 20.0).hypot(s.x[1] - 10.0))));
@@ -232,7 +232,7 @@ fn what_is_cut_out_is_gone_once() {
     let body = "box = { lower = [2, 2], upper = [12, 12] }\nsubtract = [\n\
         { box = { lower = [3, 3], upper = [6, 6] } }, { polygon = [[5, 5], [8, 5], [8, 8], [5, 8]] },\n\
         { box = { lower = [11, 2.5], upper = [15, 4.25] } }, { polygon = [[2, 9], [4.5, 9], [2, 12]] },\n\
-        { circle = { center = [30, 10], radius = 5 } } ]";
+        { circle = { centre = [30, 10], radius = 5 } } ]";
     let case = case(METRES, &[body], 4);
     let expected = 100.0 - (9.0 + 9.0 - 1.0) - 1.75 - 0.5 * 2.5 * 3.0;
     assert!((case.bodies[0].area() / expected - 1.0).abs() < 1e-13, "{}", case.bodies[0].area());
@@ -277,7 +277,7 @@ fn a_cell_without_a_place_inside_has_one_point() {
 fn the_one_point_of_a_cap_is_its_centroid() {
     // What a circle has above y = 12 where no place of the lattice is: chord 2 m, height .2 m.
     let radius: f64 = (1.0 + 0.2 * 0.2) / (2.0 * 0.2);
-    let circle = format!("circle = {{ center = [12.5, {:?}], radius = {radius:?} }}", 12.2 - radius);
+    let circle = format!("circle = {{ centre = [12.5, {:?}], radius = {radius:?} }}", 12.2 - radius);
     let grid = "lower = [0, 0]\nupper = [40, 20]\ncell = [5.0, 4.0]";
     let seeds = verify(&case(grid, &[&circle], 1), 1e-12);
     let caps: Vec<_> = seeds.iter().filter(|seed| seed.x[1] > 12.0).collect();
@@ -301,9 +301,9 @@ fn bodies_that_only_seem_to_overlap() {
     assert!(!warned(triangle, "box = { lower = [6, 6], upper = [9, 9] }"));
     assert!(warned(triangle, "box = { lower = [2, 2], upper = [3, 3] }"));
     let hole =
-        "circle = { center = [15, 10], radius = 5 }\nsubtract = [{ circle = { center = [15, 10], radius = 3 } }]";
-    assert!(!warned(hole, "circle = { center = [15, 10], radius = 3 }"));
-    assert!(warned(hole, "circle = { center = [15, 10], radius = 3.01 }"));
+        "circle = { centre = [15, 10], radius = 5 }\nsubtract = [{ circle = { centre = [15, 10], radius = 3 } }]";
+    assert!(!warned(hole, "circle = { centre = [15, 10], radius = 3 }"));
+    assert!(warned(hole, "circle = { centre = [15, 10], radius = 3.01 }"));
 }
 
 #[test]
@@ -312,7 +312,7 @@ fn weight_above_a_place() {
         "box = { lower = [0, 1], upper = [4, 3] }",
         "box = { lower = [4, 1], upper = [8, 2] }",
         "polygon = [[0, 5], [4, 5], [4, 9]]",
-        "box = { lower = [10, 2], upper = [20, 12] }\nsubtract = [{ circle = { center = [15, 7], radius = 3 } }]",
+        "box = { lower = [10, 2], upper = [20, 12] }\nsubtract = [{ circle = { centre = [15, 7], radius = 3 } }]",
     ];
     let case = case(METRES, &bodies, 2);
     let rows = [
@@ -345,7 +345,7 @@ fn outlines_that_would_take_too_long_are_refused_soon() {
     let errors = try_case(fine, &[&polygon(&comb)], 3).unwrap_err();
     assert!(errors.iter().any(|error| error.message.contains("would take too long")), "{errors:?}");
     assert!(try_case(METRES, &[&polygon(&comb)], 3).is_ok());
-    let many: Vec<String> = vec!["{ circle = { center = [1, 1], radius = 1 } }".to_owned(); 6000];
+    let many: Vec<String> = vec!["{ circle = { centre = [1, 1], radius = 1 } }".to_owned(); 6000];
     let body = format!("box = {{ lower = [1, 1], upper = [2, 2] }}\nsubtract = [{}]", many.join(", "));
     let errors = try_case(METRES, &[&body], 3).unwrap_err();
     assert!(errors[0].message.contains("12004 edges in all; at most 10000"), "{errors:?}");
@@ -363,7 +363,7 @@ fn bodies_are_cut_at_planes_of_symmetry() {
         let case = case(ROLLERS, &[body], 2);
         (case.notes.iter().filter(|note| note.value.starts_with("cut at")).count(), verify(&case, 1e-12))
     };
-    let circle = "circle = { center = [0, 0], radius = 9.7 }";
+    let circle = "circle = { centre = [0, 0], radius = 9.7 }";
     let by_hand = format!(
         "{circle}\nsubtract = [{{ box = {{ lower = [-20, -20], upper = [0, 20] }} }}, \
          {{ box = {{ lower = [-20, -20], upper = [20, 0] }} }}]"
@@ -378,7 +378,7 @@ fn bodies_are_cut_at_planes_of_symmetry() {
     let half = points("polygon = [[-5.5, 1], [5.5, 1], [0, 9]]").1;
     assert!((half.iter().map(|seed| seed.volume).sum::<f64>() / 22.0 - 1.0).abs() < 1e-12);
     // No symmetry: refused as before; so without a roller.
-    for body in ["box = { lower = [-3, 1], upper = [3.5, 4] }", "circle = { center = [0.1, 0], radius = 9.7 }"] {
+    for body in ["box = { lower = [-3, 1], upper = [3.5, 4] }", "circle = { centre = [0.1, 0], radius = 9.7 }"] {
         assert!(try_case(ROLLERS, &[body], 2).unwrap_err()[0].message.contains("outside the grid"), "{body}");
     }
     assert!(try_case(METRES, &[circle], 2).is_err());
@@ -389,18 +389,26 @@ fn bodies_are_cut_at_planes_of_symmetry() {
 fn solids_are_cut_at_planes_of_symmetry() {
     let volume = |body: &str| {
         let text = format!(
-            "geometry = \"solid\"\nanalysis = {{ type = \"quasi-static\", steps = 1 }}\n\
+            "geometry = \"3d\"\nanalysis = {{ type = \"quasi-static\", steps = 1 }}\n\
              boundary = {{ bottom = \"roller\", left = \"roller\", front = \"roller\" }}\n\
-             grid = {{ lower = [0, 0, 0], upper = [3, 3, 3], cell = 0.25, order = \"quadratic\" }}\n\
-             [material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\n\
+             grid = {{ lower = [0, 0, 0], upper = [3, 3, 3], cell = 0.25, degree = \"quadratic\" }}\n\
+             [material.m]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\n\
              [[body]]\nmaterial = \"m\"\npoints_per_cell = 2\n{body}\n"
         );
         let case = Case::from_text("case.toml", &text, &[]).unwrap_or_else(|errors| panic!("{errors:#?}"));
         let points: Vec<Seed<3>> = seed::<Solid, 3>(&case, 0..case.grid.axes[0].cells()).collect();
         points.iter().map(|point| point.volume).sum::<f64>()
     };
-    let quarter = volume("extrude = { circle = { center = [0, 0], radius = 2 }, along = \"z\", from = 0, to = 1.5 }");
+    let quarter = volume("extrude = { circle = { centre = [0, 0], radius = 2 }, along = \"z\", from = 0, to = 1.5 }");
     assert!((quarter / (1.5 * std::f64::consts::PI) - 1.0).abs() < 1e-9, "{quarter}");
-    let eighth = volume("sphere = { center = [0, 0, 0], radius = 2 }");
+    let eighth = volume("sphere = { centre = [0, 0, 0], radius = 2 }");
     assert!((eighth / (4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3, "{eighth}");
+}
+
+#[test]
+fn a_polygon_may_repeat_its_first_corner_at_its_end() {
+    let of = |corners: &str| case(METRES, &[&format!("polygon = [{corners}]")], 2);
+    let (open, closed) = (of("[1, 0], [9, 0], [4, 6]"), of("[1, 0], [9, 0], [4, 6], [1, 0]"));
+    assert_eq!(open.bodies[0].area(), closed.bodies[0].area());
+    assert_eq!(open.points(), closed.points());
 }

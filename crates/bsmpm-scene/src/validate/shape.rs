@@ -169,7 +169,7 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     }
     if record.gives("circle") {
         let circle = record.record("circle")?;
-        return Some(BodyShape::Circle { center: circle.pair("center")?, radius: circle.number("radius")? });
+        return Some(BodyShape::Circle { center: circle.pair("centre")?, radius: circle.number("radius")? });
     }
     let shape = record.record("box")?;
     let [lower, upper] = [shape.vector("lower")?, shape.vector("upper")?].map(|[x, y, _]| [x, y]);
@@ -182,7 +182,11 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
 
 fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     let rows = record.rows("polygon")?;
-    let corners: Vec<[f64; 2]> = rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
+    let mut corners: Vec<[f64; 2]> = rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
+    // Some close a polygon by its first corner once more.
+    if corners.len() > 3 && corners.first() == corners.last() {
+        corners.pop();
+    }
     if corners.len() > region::MOST_EDGES {
         let message = format!("{} corners; at most {} are possible", corners.len(), region::MOST_EDGES);
         record.error("polygon", message, report);
