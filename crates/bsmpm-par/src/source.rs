@@ -80,6 +80,7 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
     lines.extend(
         told.chain(chosen.iter().map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason))),
     );
+    lines.extend(case.renamings.iter().map(|renaming| format!("note: {renaming}")));
     lines.extend(setup::warnings(case, ranks).iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n")
 }

@@ -106,6 +106,8 @@ pub struct Case {
     pub elements: Vec<ElementTest>,
     /// What is doubtful but allowed.
     pub warnings: Vec<String>,
+    /// Earlier names that the file or an override has, a sentence each with the name of now.
+    pub renamings: Vec<String>,
     /// What the program chose by itself.
     pub notes: Vec<Choice>,
     /// The case as it is run: the file's text, or with overrides or a preset the same content, complete, written anew.

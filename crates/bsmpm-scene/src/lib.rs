@@ -22,6 +22,7 @@ mod case;
 mod connected;
 mod difference;
 mod document;
+mod earlier;
 mod error;
 mod estimate;
 mod grid;

@@ -27,8 +27,12 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
         }
         match parsed(value.trim(), origin) {
             Ok(node) => {
-                let mut setting = Setting { parts: &parts, node, origin };
-                if let Err(message) = setting.in_table(document, Some(&ROOT), 0) {
+                let mut setting = Setting { parts: &parts, node, origin, renamed: Vec::new() };
+                let set = setting.in_table(document, Some(&ROOT), 0);
+                for (earlier, now) in setting.renamed {
+                    report.renamed(earlier, now, key.trim());
+                }
+                if let Err(message) = set {
                     report.error(origin, key.trim(), message);
                 }
             }
@@ -50,16 +54,27 @@ struct Setting<'a> {
     parts: &'a [&'a str],
     node: Node,
     origin: Origin,
+    /// earlier names in the path, with those of now
+    renamed: Vec<(&'a str, &'static str)>,
 }
 
-impl Setting<'_> {
+impl<'a> Setting<'a> {
+    /// The key at a depth of the path, by its name of now.
+    fn name_of_now(&mut self, schema: Option<&'static Schema>, depth: usize) -> &'a str {
+        let name = self.parts[depth];
+        let is_unknown = |schema: &&'static Schema| schema.key(name).is_none();
+        let Some(key) = schema.filter(is_unknown).and_then(|schema| schema.renamed(name)) else { return name };
+        self.renamed.push((name, key.name));
+        key.name
+    }
+
     fn in_table(
         &mut self,
         table: &mut DocumentTable,
         schema: Option<&'static Schema>,
         depth: usize,
     ) -> Result<(), String> {
-        let name = self.parts[depth];
+        let name = self.name_of_now(schema, depth);
         if let Some(schema) = schema {
             table.entries.retain(|entry| schema.rivals(name).all(|rival| rival != entry.key));
         }

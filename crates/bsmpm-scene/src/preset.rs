@@ -146,13 +146,13 @@ fn fill_accuracy(
     // Its errors are reported when the filled document is read.
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     if record.word("geometry") == Some(Geometry::Solid) {
-        let message = "not available in a solid yet: give cells, points, steps and tolerances";
+        let message = "not available in 3-D yet: give cells, points, steps and tolerances";
         report.error(choice.origin, ACCURACY, message);
         return false;
     }
     let scene = PresetScene::of(&record);
     let mut filling = Completion { document, choice, report, filled: false };
-    filling.put("grid", &["order"], &quoted(ORDER), "");
+    filling.put("grid", &["degree"], &quoted(ORDER), "");
     let cells = scene.cells(preset);
     filling.cells(cells.as_ref(), &scene, preset);
     // The cells that a case gives by hand count, too.

@@ -6,7 +6,7 @@ use crate::report::Report;
 use crate::schema::ROOT;
 use crate::source::{Source, decode};
 use crate::validate::CaseUse;
-use crate::{document, overrides, preset, record, validate};
+use crate::{document, earlier, overrides, preset, record, validate};
 
 impl Case {
     /// The case in `text`, the content of the file `name`, with overrides `KEY=VALUE` merged in their order.
@@ -42,14 +42,17 @@ impl Case {
         if report.failed() {
             return Err(report.into_errors());
         }
+        earlier::replace(&mut document, &mut report);
         overrides::apply(&mut document, overrides, &mut report);
+        earlier::replace(&mut document, &mut report);
         if document.entries.is_empty() && !report.failed() {
             report.error(Origin::Nowhere, "", "the file is empty: it holds no key of a case");
             return Err(report.into_errors());
         }
         let filled = preset::fill(&mut document, &source, overrides, &mut report);
         let record = record::read(&ROOT, &document, &mut report);
-        let effective = if overrides.is_empty() && !filled { text.to_owned() } else { document.to_toml() };
+        let as_written = overrides.is_empty() && !filled && !report.has_renamings();
+        let effective = if as_written { text.to_owned() } else { document.to_toml() };
         match validate::case(&record, effective, case_use, &mut report) {
             Some(case) if !report.failed() => Ok(case),
             _ => Err(report.into_errors()),

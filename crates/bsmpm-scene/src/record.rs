@@ -7,7 +7,7 @@ use crate::document::{self, DocumentTable, Node, Value};
 use crate::error::Origin;
 use crate::nearest::nearest;
 use crate::report::{Report, shortened};
-use crate::schema::{CALLED, Group, Key, Kind, Presence, Table};
+use crate::schema::{Group, Key, Kind, Presence, Table, answer};
 use crate::unit::Dimension;
 use crate::words::{AnalysisType, Geometry, Word};
 pub(crate) use value::UNREAD;
@@ -216,21 +216,22 @@ impl Context {
     }
 
     fn unknown_key(self, table: &'static Table, key: &str) -> String {
+        if let Some(answer) = answer(table, key) {
+            return format!("unknown key `{}` in {}: {answer}", shortened(key), table.header);
+        }
         let names = || table.keys.iter().filter(|key| key.presence != Presence::Retired).map(|key| key.name);
         let elsewhere = || self.root.all().into_iter().find(|other| other.key(key).is_some());
-        let called = CALLED.iter().find(|(other, _)| *other == key);
-        let hint = match (called, nearest(key, names()), elsewhere()) {
-            (Some((_, here)), ..) => format!("; what is meant is {here}"),
-            (_, Some(name), _) => format!("; did you mean `{name}`?"),
-            (_, None, Some(other)) => format!("; `{key}` belongs to {}", other.header),
-            (_, None, None) => String::new(),
+        let hint = match (nearest(key, names()), elsewhere()) {
+            (Some(name), _) => format!("; did you mean `{name}`?"),
+            (None, Some(other)) => format!("; `{key}` belongs to {}", other.header),
+            (None, None) => String::new(),
         };
         let known: Vec<&str> = names().collect();
         format!("unknown key `{}` in {}{hint} (known: {})", shortened(key), table.header, known.join(", "))
     }
 }
 
-fn join(path: &str, key: &str) -> String {
+pub(crate) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 

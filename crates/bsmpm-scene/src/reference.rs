@@ -135,7 +135,7 @@ impl Page {
                 self.wrapped("  - ", &format!("`{suffix}`: {part}"));
             }
             for (suffix, part) in measured.columns_in(3).iter().filter(|column| !measured.columns().contains(column)) {
-                self.wrapped("  - ", &format!("`{suffix}`: of a solid, {part}"));
+                self.wrapped("  - ", &format!("`{suffix}`: in 3-D, {part}"));
             }
         }
     }
@@ -173,22 +173,22 @@ fn takes(key: &Key) -> String {
         Kind::Quantity(of, range) => ranged(of.to_string(), range),
         Kind::Profile(of, range, table) => ranged(format!("{of}, or {}", quoted(table)), range),
         Kind::Pair(of, range) => ranged(format!("`[x, y]`, each {of}"), range),
-        Kind::Vector(of, range) => ranged(format!("`[x, y]`, of a solid `[x, y, z]`, each {of}"), range),
+        Kind::Vector(of, range) => ranged(format!("`[x, y]`, in 3-D `[x, y, z]`, each {of}"), range),
         Kind::PairProfile(of, range, table) => {
-            ranged(format!("`[x, y]`, of a solid `[x, y, z]`, each {of}, or {}", quoted(table)), range)
+            ranged(format!("`[x, y]`, in 3-D `[x, y, z]`, each {of}, or {}", quoted(table)), range)
         }
-        Kind::Either(of, range) => ranged(format!("{of}, or `[x, y]`, of a solid `[x, y, z]`"), range),
+        Kind::Either(of, range) => ranged(format!("{of}, or `[x, y]`, in 3-D `[x, y, z]`"), range),
         Kind::List(of, range) => ranged(format!("a list, each {of}"), range),
         Kind::Rows(columns) => {
             let columns: Vec<String> = columns.iter().map(|(of, range)| column(*of, range)).collect();
             format!("a list of rows, each `[{}]`, or a [file](#rows-from-a-file)", columns.join(", "))
         }
         Kind::Course(of) => format!(
-            "a list of rows, each `[t, x, y]`, of a solid `[t, x, y, z]`, a time and {of}, or a [file](#rows-from-a-file)"
+            "a list of rows, each `[t, x, y]`, in 3-D `[t, x, y, z]`, a time and {of}, or a [file](#rows-from-a-file)"
         ),
         Kind::Gradient(of) => format!("{of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or("")),
         Kind::GradientVector(of) => format!(
-            "`[x, y]`, of a solid `[x, y, z]`, each {of} per metre of depth, e.g. `\"2 {}/m\"`",
+            "`[x, y]`, in 3-D `[x, y, z]`, each {of} per metre of depth, e.g. `\"2 {}/m\"`",
             of.units().next().unwrap_or("")
         ),
         Kind::Choice(_) => "one of these words".to_owned(),

@@ -16,11 +16,20 @@ pub(crate) struct Report<'a> {
     errors: Vec<(Origin, Error)>,
     warnings: Vec<String>,
     pub(crate) notes: Vec<Choice>,
+    renamings: Vec<Renaming>,
+}
+
+/// An earlier name that the case has, the name of now, and the key paths that have it.
+#[derive(Debug)]
+struct Renaming {
+    earlier: String,
+    now: String,
+    paths: Vec<String>,
 }
 
 impl<'a> Report<'a> {
     pub(crate) fn new(source: &'a Source<'a>, overrides: &'a [String]) -> Self {
-        Self { source, overrides, errors: Vec::new(), warnings: Vec::new(), notes: Vec::new() }
+        Self { source, overrides, errors: Vec::new(), warnings: Vec::new(), notes: Vec::new(), renamings: Vec::new() }
     }
 
     /// Records an error at `origin` that concerns the key path `key`.
@@ -75,6 +84,32 @@ impl<'a> Report<'a> {
 
     pub(crate) fn note(&mut self, key: impl Into<String>, value: impl Into<String>, reason: impl Into<String>) {
         self.notes.push(Choice { key: key.into(), value: value.into(), reason: reason.into() });
+    }
+
+    /// Records that the case has an earlier name at a key path.
+    pub(crate) fn renamed(&mut self, earlier: &str, now: &str, path: &str) {
+        let known = self.renamings.iter_mut().find(|known| known.earlier == earlier && known.now == now);
+        match known {
+            Some(known) if known.paths.iter().any(|other| other == path) => {}
+            Some(known) => known.paths.push(path.to_owned()),
+            None => self.renamings.push(Renaming {
+                earlier: earlier.to_owned(),
+                now: now.to_owned(),
+                paths: vec![path.to_owned()],
+            }),
+        }
+    }
+
+    pub(crate) fn has_renamings(&self) -> bool {
+        !self.renamings.is_empty()
+    }
+
+    /// Hands over what earlier names the case has: one sentence for each.
+    pub(crate) fn take_renamings(&mut self) -> Vec<String> {
+        let sentence = |Renaming { earlier, now, paths }: Renaming| {
+            format!("{}: {earlier} is now called {now}. The earlier name is still read.", listed(&paths))
+        };
+        std::mem::take(&mut self.renamings).into_iter().map(sentence).collect()
     }
 
     pub(crate) fn failed(&self) -> bool {

@@ -2,6 +2,7 @@
 //!
 //! The reader takes names, types, units, ranges and defaults from here; messages and `did you mean` do too.
 
+mod answers;
 mod body;
 mod element;
 mod flow;
@@ -12,6 +13,8 @@ mod rigid;
 mod stage;
 mod tables;
 mod water;
+
+pub(crate) use answers::answer;
 
 pub use crate::unit::Dimension;
 pub use crate::words::Words;
@@ -58,10 +61,19 @@ pub struct Key {
     pub presence: Presence,
     /// What it means.
     pub doc: &'static str,
+    /// Names that it had in earlier versions, which are still read.
+    pub earlier: &'static [&'static str],
+}
+
+impl Key {
+    /// The same key with the names that it had in earlier versions.
+    const fn renamed_from(self, earlier: &'static [&'static str]) -> Self {
+        Self { earlier, ..self }
+    }
 }
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
-    Key { name, kind, presence, doc }
+    Key { name, kind, presence, doc, earlier: &[] }
 }
 
 /// Whether a key must be given, and what holds if it is not.
@@ -94,7 +106,7 @@ pub enum Kind {
     Measure,
     /// Two quantities, x and y.
     Pair(Dimension, Range),
-    /// As many as the geometry has axes: x and y, and of a solid z.
+    /// As many as the geometry has axes: x and y, and in 3-D z.
     Vector(Dimension, Range),
     /// Like `Vector`, or a table that says how they grow with depth.
     PairProfile(Dimension, Range, &'static Table),
@@ -196,6 +208,11 @@ impl Table {
         self.keys.iter().find(|key| key.name == name)
     }
 
+    /// The key that had this name in an earlier version.
+    pub fn renamed(&self, earlier: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.earlier.contains(&earlier))
+    }
+
     /// Keys of which none may be given beside `name`.
     pub fn rivals(&self, name: &str) -> impl Iterator<Item = &'static str> {
         let groups = self.exclusive.iter().filter(move |group| group.keys.contains(&name));
@@ -227,25 +244,25 @@ impl fmt::Display for Kind {
             Self::Profile(dimension, _, table) => write!(f, "{}, or {}", QuantityWords(*dimension), table.header),
             Self::Gradient(dimension) => write!(f, "{}", PerMetre(*dimension)),
             Self::GradientVector(dimension) => {
-                write!(f, "a list of two (solid: of three), each {}", PerMetre(*dimension))
+                write!(f, "a list of two (three in 3-D), each {}", PerMetre(*dimension))
             }
             Self::Rows(columns) => {
                 let columns: Vec<String> = columns.iter().map(|(dimension, _)| dimension.to_string()).collect();
                 write!(f, "a list of rows, each [{}], or {FILE}", columns.join(", "))
             }
             Self::Course(dimension) => {
-                write!(f, "a list of rows, each [a time, {dimension}, {dimension}] (solid: of three), or {FILE}")
+                write!(f, "a list of rows, each [a time, {dimension}, {dimension}] (three in 3-D), or {FILE}")
             }
             Self::Measure => f.write_str("a number, or a string with a unit"),
             Self::Pair(dimension, _) => write!(f, "a list of two, each {}", QuantityWords(*dimension)),
             Self::PairProfile(dimension, _, table) => {
-                write!(f, "a list of two (solid: of three), each {}, or {}", QuantityWords(*dimension), table.header)
+                write!(f, "a list of two (three in 3-D), each {}, or {}", QuantityWords(*dimension), table.header)
             }
             Self::Vector(dimension, _) => {
-                write!(f, "a list of two (solid: of three), each {}", QuantityWords(*dimension))
+                write!(f, "a list of two (three in 3-D), each {}", QuantityWords(*dimension))
             }
             Self::Either(dimension, _) => {
-                write!(f, "{}, or a list of two (solid: of three)", QuantityWords(*dimension))
+                write!(f, "{}, or a list of two (three in 3-D)", QuantityWords(*dimension))
             }
             Self::List(dimension, _) => write!(f, "a list, each item {}", QuantityWords(*dimension)),
             Self::Count(least, most) => write!(f, "a whole number from {least} to {most}"),
@@ -263,14 +280,6 @@ impl fmt::Display for Kind {
         }
     }
 }
-
-/// What a key is called here that has another name elsewhere, or none of its own.
-pub(crate) const CALLED: &[(&str, &str)] = &[
-    ("probe", "[[history]] with `quantity` and `at`; surface = true reads the surface itself"),
-    ("regularisation", "`band_width`, the width of the shear band that softening_strain is of"),
-    ("regularization", "`band_width`, the width of the shear band that softening_strain is of"),
-    ("traction_path", "`stress_path`, and of a pressure `pressure_path`"),
-];
 
 /// Rows from a file, which is read where the case file names it.
 const FILE: &str = "`{ file = \"rows.csv\" }`";

@@ -160,6 +160,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
         checks,
         elements,
         warnings: Vec::new(),
+        renamings: Vec::new(),
         notes: Vec::new(),
         text,
     };
@@ -201,7 +202,8 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     flow::check(&case, record, report);
     axisymmetric::check(&case, record, report);
     waves::check(&case, record, report);
-    Some(Case { warnings: report.take_warnings(), notes: std::mem::take(&mut report.notes), ..case })
+    let renamings = report.take_renamings();
+    Some(Case { renamings, warnings: report.take_warnings(), notes: std::mem::take(&mut report.notes), ..case })
 }
 
 fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>) -> Option<Analysis> {
@@ -271,7 +273,7 @@ fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Repor
 
 /// Numerical damping, of which only a dynamic analysis can have any.
 fn newmark(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> Option<Newmark> {
-    let Some(key) = ["spectral_radius", "gamma"].into_iter().find(|key| analysis.gives(key)) else {
+    let Some(key) = ["spectral_radius", "newmark_gamma"].into_iter().find(|key| analysis.gives(key)) else {
         return Some(Newmark::default());
     };
     if regime == Regime::QuasiStatic {
@@ -280,7 +282,7 @@ fn newmark(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> Option
     if analysis.gives("spectral_radius") {
         return analysis.number("spectral_radius").map(Newmark::of_spectral_radius);
     }
-    analysis.number("gamma").map(Newmark::of_gamma)
+    analysis.number("newmark_gamma").map(Newmark::of_gamma)
 }
 
 /// The mass matrix, of which only a dynamic analysis has any.
@@ -338,17 +340,17 @@ fn contact(boundary: &Record, side: Side, factor: Option<f64>, report: &mut Repo
 
 /// Friction, divided by the `factor` of the strength, and whether material comes off; none after an error.
 fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Contact> {
-    let (given, lifts) = (face.number("friction")?, face.flag("lifts")?);
+    let (given, lifts) = (face.number("friction_coefficient")?, face.flag("separates")?);
     let friction = factor.map_or(given, |factor| given / factor);
     if friction != given {
         let reason = format!("strength_reduction.factor = {}", factor.unwrap_or(1.0));
-        report.note(face.path_of("friction"), format!("{friction}"), reason);
+        report.note(face.path_of("friction_coefficient"), format!("{friction}"), reason);
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
             "{}: {friction}: shown to be right up to {MOST_SHOWN_FRICTION}; with more, steps may find no state that agrees \
              with Coulomb's law, or one of several",
-            face.path_of("friction")
+            face.path_of("friction_coefficient")
         ));
     }
     Some(Contact { friction, lifts })

@@ -44,6 +44,8 @@ pub struct Words {
     pub later: &'static [&'static str],
     /// Words that others use, and which of these is meant.
     pub misnomers: &'static [(&'static str, &'static str)],
+    /// Words of earlier versions, which are still read, and those of now.
+    pub earlier: &'static [(&'static str, &'static str)],
     /// Words that earlier versions had.
     pub removed: &'static [RemovedWord],
 }
@@ -60,6 +62,11 @@ pub struct RemovedWord {
 }
 
 impl Words {
+    /// The word of now for a word of an earlier version.
+    pub fn renamed(&self, earlier: &str) -> Option<&'static str> {
+        self.earlier.iter().find(|(word, _)| *word == earlier).map(|(_, now)| *now)
+    }
+
     /// Words and what they mean.
     pub fn all(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         self.auto.into_iter().chain(self.words.iter().copied()).map(|(word, doc)| (word, doc.trim_start()))

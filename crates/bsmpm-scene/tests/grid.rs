@@ -36,13 +36,13 @@ fn splines_are_quadratic_unless_an_order_is_given_and_the_choice_is_noted() {
         let text = format!(
             "geometry = \"plane-strain\"\nanalysis = {{ type = \"quasi-static\", steps = 1 }}\n\
              grid = {{ lower = [0, 0], upper = [2, 2], cell = 1{order} }}\nboundary = {{ bottom = \"fixed\" }}\n\
-             [material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\n\
+             [material.m]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\n\
              [[body]]\nmaterial = \"m\"\npoints_per_cell = 2\nbox = {{ lower = [0, 0], upper = [2, 1] }}\n"
         );
         Case::from_text("case.toml", &text, &[]).expect("a valid case")
     };
-    let notes = |case: &Case| case.notes.iter().filter(|note| note.key == "grid.order").count();
-    let [absent, given, cubic] = ["", ", order = \"quadratic\"", ", order = \"cubic\""].map(case);
+    let notes = |case: &Case| case.notes.iter().filter(|note| note.key == "grid.degree").count();
+    let [absent, given, cubic] = ["", ", degree = \"quadratic\"", ", degree = \"cubic\""].map(case);
     assert_eq!([absent.grid.order, given.grid.order, cubic.grid.order], [2, 2, 3]);
     assert_eq!([notes(&absent), notes(&given), notes(&cubic)], [1, 0, 0]);
 }

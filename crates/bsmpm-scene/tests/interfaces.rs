@@ -56,9 +56,9 @@ fn interfaces_beyond_what_was_shown_are_told_of() {
 /// A quasi-static case in cells of 1 m with these shapes as bodies.
 fn shapes(shapes: &[&str]) -> Vec<String> {
     let mut text = "geometry = \"plane-strain\"\nanalysis = { type = \"quasi-static\", steps = 1 }\n\
-                    grid = { lower = [0, 0], upper = [12, 12], cell = 1, order = \"quadratic\" }\n\
+                    grid = { lower = [0, 0], upper = [12, 12], cell = 1, degree = \"quadratic\" }\n\
                     boundary = { bottom = \"fixed\", left = \"fixed\" }\n\
-                    [material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\n"
+                    [material.m]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\n"
         .to_owned();
     for shape in shapes {
         text += &format!("[[body]]\nmaterial = \"m\"\npoints_per_cell = 4\n{shape}\n");
@@ -98,7 +98,7 @@ fn bodies_that_are_apart_by_less_than_a_cell_are_warned_of() {
 #[test]
 fn the_gap_of_other_shapes_is_that_between_their_edges() {
     let slope = "polygon = [[0, 0], [8, 0], [0, 8]]";
-    let circle = |center: f64| format!("circle = {{ center = [{center:?}, {center:?}], radius = 1 }}");
+    let circle = |center: f64| format!("circle = {{ centre = [{center:?}, {center:?}], radius = 1 }}");
     // The slope's surface is x + y = 8.
     let apart = |gap: f64| 4.0 + (1.0 + gap) / std::f64::consts::SQRT_2;
     let found = shapes(&[slope, &circle(apart(0.25))]);
@@ -110,8 +110,8 @@ fn the_gap_of_other_shapes_is_that_between_their_edges() {
     assert_eq!(shapes(&[slope, above]), [""; 0]);
     let circles = |x: f64| {
         [
-            "circle = { center = [2, 4], radius = 1 }".to_owned(),
-            format!("circle = {{ center = [{x:?}, 4], radius = 1 }}"),
+            "circle = { centre = [2, 4], radius = 1 }".to_owned(),
+            format!("circle = {{ centre = [{x:?}, 4], radius = 1 }}"),
         ]
     };
     for (x, warned) in [(4.5, 1), (5.5, 0)] {

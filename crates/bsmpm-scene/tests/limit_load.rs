@@ -89,11 +89,11 @@ fn the_load_of_a_footing_that_moves_sideways_is_its_force_along_its_motion() {
 
 #[test]
 fn motions_along_which_no_limit_load_is_found_are_refused() {
-    let graded = "grid={ lower = [0.0, 0.0], upper = [6.0, 3.5], cell = [0.4, 0.25], order = \"quadratic\" }";
+    let graded = "grid={ lower = [0.0, 0.0], upper = [6.0, 3.5], cell = [0.4, 0.25], degree = \"quadratic\" }";
     refused(CLAY, &[graded], "ends inside a cell");
-    let stops = "footing={ from = [0.0, 3.0], to = [1.0, 3.0], base = \"smooth\", path = [[0.5, 0.0, -0.2], [1.0, 0.0, -0.2]] }";
+    let stops = "footing={ from = [0.0, 3.0], to = [1.0, 3.0], interface = \"smooth\", path = [[0.5, 0.0, -0.2], [1.0, 0.0, -0.2]] }";
     refused(CLAY, &[stops], "stops or turns back");
-    let back = "footing={ from = [0.0, 3.0], to = [1.0, 3.0], base = \"smooth\", path = [[0.5, 0.0, -0.2], [1.0, 0.0, -0.1]] }";
+    let back = "footing={ from = [0.0, 3.0], to = [1.0, 3.0], interface = \"smooth\", path = [[0.5, 0.0, -0.2], [1.0, 0.0, -0.1]] }";
     refused(CLAY, &[back], "stops or turns back");
     let wall =
         "prescribed.0={ from = [0.0, 2.0], to = [0.0, 3.0], displacement = [0.1, 0.0], components = \"normal\" }";
@@ -105,17 +105,17 @@ fn motions_along_which_no_limit_load_is_found_are_refused() {
 
 #[test]
 fn what_has_no_limit_load_is_refused() {
-    refused(SAND, &["footing.displacement=[0.0, 0.0]", "footing.base=rough"], "nothing moves");
+    refused(SAND, &["footing.displacement=[0.0, 0.0]", "footing.interface=rough"], "nothing moves");
     refused(SAND, &["solver.force_tolerance=1e-3"], "limit loads are wrong");
     refused(SAND, &["strength_reduction.factor=1.2"], "[strength_reduction] chooses a stiffness");
     let hardening =
         "material.clay={ model = \"von-mises\", young = 5e6, poisson = 0.49, yield_stress = 2e4, hardening = 1e5 }";
     refused(CLAY, &[hardening], "depends on its strain");
     refused(PUNCH, &["rigid.0.rotation=[[1.0, 5.0]]"], "rotates or is free");
-    let clay = "kappa = 0.05, lambda = 0.2, critical_ratio = 1.0, preconsolidation = \"50 kPa\"";
+    let clay = "kappa_star = 0.05, lambda_star = 0.2, critical_state_ratio = 1.0, preconsolidation = \"50 kPa\"";
     let clay = format!("material.clay={{ model = \"cam-clay\", young = 5e6, poisson = 0.3, {clay} }}");
     assert!(read(CLAY, &[&clay]).is_err());
-    let in_time = "analysis={ type = \"quasi-static-in-time\", end = 1.0, purpose = \"limit-load\" }";
+    let in_time = "analysis={ type = \"quasi-static-rate\", end = 1.0, purpose = \"limit-load\" }";
     refused(CLAY, &[in_time], "needs type = \"quasi-static\"");
 }
 
@@ -123,7 +123,7 @@ fn what_has_no_limit_load_is_refused() {
 fn settings_with_which_limit_loads_are_wrong_are_warned_of() {
     assert!(valid(SAND, &[]).warnings.is_empty(), "{:?}", valid(SAND, &[]).warnings);
     assert!(warned(&valid(SAND, &["body.0.points_per_cell=3"]), "lock soil that dilates"));
-    assert!(warned(&valid(SAND, &["material.sand.dilation=0.0"]), "no unique limit load"));
+    assert!(warned(&valid(SAND, &["material.sand.dilation_angle=0.0"]), "no unique limit load"));
     let averaged = "stabilisation.method=consistent-f-bar";
     assert!(warned(&valid(SAND, &[averaged]), "32 % too low to 42 % too high"));
     // Also without the purpose, and not with cohesion.

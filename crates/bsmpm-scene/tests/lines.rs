@@ -12,7 +12,7 @@ const LAYERS: &str = r#"
     lower = [0.0, 0.0]
     upper = [8.0, 6.0]
     cell  = 0.5
-    order = "quadratic"
+    degree = "quadratic"
     [material.soft]
     model = "tresca"
     young = 1e6
@@ -20,7 +20,7 @@ const LAYERS: &str = r#"
     cohesion = 1e3
     density = 2000.0
     [material.stiff]
-    model = "hencky"
+    model = "elastic"
     young = 1e7
     poisson = 0.3
     density = 2000.0
@@ -41,7 +41,8 @@ const LAYERS: &str = r#"
     [stabilisation]
     method = "consistent-f-bar"
 "#;
-const STRIP: &str = "[footing]\nfrom = [3.0, 4.0]\nto = [5.0, 4.0]\ndisplacement = [0.0, -0.1]\nbase = \"rough\"\n";
+const STRIP: &str =
+    "[footing]\nfrom = [3.0, 4.0]\nto = [5.0, 4.0]\ndisplacement = [0.0, -0.1]\ninterface = \"rough\"\n";
 
 fn case(text: &str) -> Case {
     Case::from_text("case.toml", text, &[]).unwrap_or_else(|errors| panic!("{errors:#?}\n{text}"))
@@ -90,7 +91,7 @@ fn an_interface_inside_cells_is_warned_of() {
     assert!(lines(&sloping).2.iter().any(|told| told.contains("meet inside cells")));
     assert!(lines(&sloping.replace("young = 1e7", "young = 1.2e6")).2.is_empty());
     // Without automatic lines the same is told of the line that there might be.
-    let none = LAYERS.replace("order = \"quadratic\"", "order = \"quadratic\"\nc0_lines = \"none\"");
+    let none = LAYERS.replace("degree = \"quadratic\"", "degree = \"quadratic\"\nc0_lines = \"none\"");
     let (found, _, warnings) = lines(&none);
     assert_eq!(found, [vec![], vec![]]);
     assert!(warnings.iter().any(|told| told.contains("c0_lines") && told.contains("y = 2")), "{warnings:?}");
@@ -126,7 +127,7 @@ fn bodies_of_a_solid_meet_on_planes_of_the_grid_or_are_warned_of() {
     let [under, over] = ["[0, 0], [6, 0], [6, 6]", "[0, 0], [6, 6], [0, 6]"]
         .map(|at| format!("extrude = {{ polygon = [{at}], along = \"y\", from = 0, to = 2 }}"));
     assert_eq!(solid([&under, &over]), ([vec![], vec![], vec![]], true));
-    let pile = "extrude = { circle = { center = [4, 1], radius = 1 }, along = \"z\", from = 2, to = 4 }";
+    let pile = "extrude = { circle = { centre = [4, 1], radius = 1 }, along = \"z\", from = 2, to = 4 }";
     let around = format!("box = {{ lower = [0, 0, 0], upper = [8, 2, 4] }}\n    subtract = [{{ {pile} }}]");
     assert_eq!(solid([&around, pile]), ([vec![], vec![], vec![4]], true));
     let foot = "extrude = { polygon = [[0, 3], [4.5, 3], [4.5, 2], [5, 2], [5, 3], [8, 3], [8, 4], [0, 4]], \
@@ -199,7 +200,7 @@ fn where_water_fills_ground_that_moves_through_lines_they_are_told_of() {
     let law = ["model = \"tresca\"", "cohesion = 1e3"];
     let friction = |angle: u32| {
         let mohr = strip.replace(law[0], "model = \"mohr-coulomb\"");
-        mohr.replace(law[1], &format!("cohesion = 1e3\n    friction = {angle}"))
+        mohr.replace(law[1], &format!("cohesion = 1e3\n    friction_angle = {angle}"))
     };
     assert!(rubs(&friction(25)) && !rubs(&friction(0)) && !rubs(&strip));
     assert!(!rubs(&friction(25).replace(STRIP, "")), "no line");
@@ -219,10 +220,10 @@ fn what_is_tight_beside_what_is_not_is_warned_of() {
     let layers = |height: f64, tight: &str| {
         format!(
             "title = \"t\"\ngeometry = \"plane-strain\"\n[analysis]\ntype = \"consolidation\"\nend = \"1 s\"\nsteps = 4\n\
-             [grid]\nlower = [0, 0]\nupper = [1, 4]\ncell = 0.5\norder = \"quadratic\"\n\
-             [material.sand]\nmodel = \"hencky\"\nyoung = \"1 MPa\"\npoisson = 0.2\ndrainage = \"coupled\"\nporosity = 0.4\n\
+             [grid]\nlower = [0, 0]\nupper = [1, 4]\ncell = 0.5\ndegree = \"quadratic\"\n\
+             [material.sand]\nmodel = \"elastic\"\nyoung = \"1 MPa\"\npoisson = 0.2\ndrainage = \"coupled\"\nporosity = 0.4\n\
              permeability = 1e-5\n\
-             [material.clay]\nmodel = \"hencky\"\nyoung = \"1 MPa\"\npoisson = 0.2\nporosity = 0.4\n{tight}\n\
+             [material.clay]\nmodel = \"elastic\"\nyoung = \"1 MPa\"\npoisson = 0.2\nporosity = 0.4\n{tight}\n\
              [[body]]\nmaterial = \"sand\"\nbox = {{ lower = [0, 0], upper = [1, {height}] }}\npoints_per_cell = 2\n\
              [[body]]\nmaterial = \"clay\"\nbox = {{ lower = [0, {height}], upper = [1, 3] }}\npoints_per_cell = 2\n\
              [boundary]\nbottom = \"fixed\"\n[[drain]]\nname = \"base\"\nface = \"bottom\"\n"

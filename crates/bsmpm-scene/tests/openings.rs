@@ -7,17 +7,17 @@ use bsmpm_scene::{Case, NarrowestOpening};
 const PLATE: &str = r#"
 geometry = "plane-strain"
 analysis = { type = "quasi-static", steps = 1 }
-grid = { lower = [0.0, 0.0], upper = [5.0, 4.0], cell = 0.1, order = "quadratic" }
+grid = { lower = [0.0, 0.0], upper = [5.0, 4.0], cell = 0.1, degree = "quadratic" }
 boundary = { left = "roller", bottom = "roller" }
 [material.elastic]
-model = "hencky"
+model = "elastic"
 young = "20 MPa"
 poisson = 0.2
 [[body]]
 material = "elastic"
 points_per_cell = 2
 box = { lower = [0.0, 0.0], upper = [4.0, 4.0] }
-subtract = [{ circle = { center = [0.0, 0.0], radius = 0.5 } }]
+subtract = [{ circle = { centre = [0.0, 0.0], radius = 0.5 } }]
 [[traction]]
 from = [4.0, 0.0]
 to = [4.0, 4.0]
@@ -27,13 +27,13 @@ ramp = 1.0
 
 /// A block with a hole of 1 m across in cells of 0.25 m.
 const BLOCK: &str = r#"
-geometry = "solid"
+geometry = "3d"
 analysis = { type = "quasi-static", steps = 1 }
-grid = { lower = [0.0, 0.0, 0.0], upper = [3.0, 3.0, 2.0], cell = 0.25, order = "quadratic" }
+grid = { lower = [0.0, 0.0, 0.0], upper = [3.0, 3.0, 2.0], cell = 0.25, degree = "quadratic" }
 boundary = { left = "roller", front = "roller", bottom = "roller" }
 gravity = { acceleration = [0.0, 0.0, -9.81] }
 [material.elastic]
-model = "hencky"
+model = "elastic"
 young = "20 MPa"
 poisson = 0.2
 unit_weight = "20 kN/m3"
@@ -73,15 +73,15 @@ fn cells_across_holes_of_all_shapes_are_counted() {
     is_about(PLATE, &["grid.cell=0.25"], [1.0, 4.0]);
     is_about(PLATE, &["geometry=axisymmetric"], [1.0, 10.0]);
     // In the middle of the plate, and cells of two sizes: those beside the hole count.
-    is_about(PLATE, &["body.0.subtract=[{ circle = { center = [2.0, 2.0], radius = 0.25 } }]"], [0.5, 5.0]);
+    is_about(PLATE, &["body.0.subtract=[{ circle = { centre = [2.0, 2.0], radius = 0.25 } }]"], [0.5, 5.0]);
     let knots = "grid={ lower = [0.0, 0.0], upper = [5.0, 4.0], knots = { x = [0, 0.25, 0.5, 0.75, 1, 2, 3, 4, 5], \
-                 y = [0, 0.25, 0.5, 0.75, 1, 2, 3, 4] }, order = \"quadratic\" }";
+                 y = [0, 0.25, 0.5, 0.75, 1, 2, 3, 4] }, degree = \"quadratic\" }";
     is_about(PLATE, &[knots], [1.0, 4.0]);
     // A slot, and a pit from the surface, half of which is there.
     is_about(PLATE, &["body.0.subtract=[{ box = { lower = [1.0, 1.0], upper = [3.0, 1.4] } }]"], [0.4, 4.0]);
     is_about(PLATE, &["body.0.subtract=[{ box = { lower = [-1.0, 3.0], upper = [0.3, 500.0] } }]"], [0.6, 6.0]);
     // A semicircular notch in a side, as a circle, and as a polygon, of which the width is less by up to 13 %.
-    is_about(PLATE, &["body.0.subtract=[{ circle = { center = [2.0, 4.0], radius = 0.5 } }]"], [0.99, 9.9]);
+    is_about(PLATE, &["body.0.subtract=[{ circle = { centre = [2.0, 4.0], radius = 0.5 } }]"], [0.99, 9.9]);
     let corner = |k: usize| {
         let (sin, cos) = (k as f64 / 16.0 * std::f64::consts::TAU / 2.0).sin_cos();
         format!("[{}, {}]", 2.0 + 0.5 * cos, 4.0 - 0.5 * sin)
@@ -106,7 +106,7 @@ fn what_is_no_hole_is_not_taken_for_one() {
     none(&["body.0.subtract=[{ box = { lower = [2.0, 3.0], upper = [5.0, 5.0] } }]"]);
     none(&["body.0.subtract=[{ polygon = [[1.5, 4.0], [2.0, 3.5], [2.2, 3.5], [2.7, 4.0]] }]"]);
     // What another body or a rigid body fills.
-    let circle = "circle = { center = [0.0, 0.0], radius = 0.5 }";
+    let circle = "circle = { centre = [0.0, 0.0], radius = 0.5 }";
     let body = |shape: &str| format!("{{ material = \"elastic\", points_per_cell = 2, {shape} }}");
     let plate = body(&format!("box = {{ lower = [0.0, 0.0], upper = [4.0, 4.0] }}, subtract = [{{ {circle} }}]"));
     none(&[&format!("body=[{plate}, {}]", body(circle))]);
@@ -122,11 +122,11 @@ fn what_is_no_hole_is_not_taken_for_one() {
 #[test]
 fn holes_in_space_are_counted_too() {
     let with = |shape: &str| format!("body.0.subtract=[{{ {shape} }}]");
-    let sphere = with("sphere = { center = [0, 0, 2], radius = 0.5 }");
+    let sphere = with("sphere = { centre = [0, 0, 2], radius = 0.5 }");
     // Half of it is open: the widest place that is found is 3 % narrower.
     is_about(BLOCK, &[&sphere], [0.97, 3.87]);
     is_about(BLOCK, &[&sphere, "grid.cell=0.125"], [0.97, 7.73]);
-    let hole = with("extrude = { circle = { center = [1.5, 1.5], radius = 0.5 }, along = \"z\", from = 1, to = 300 }");
+    let hole = with("extrude = { circle = { centre = [1.5, 1.5], radius = 0.5 }, along = \"z\", from = 1, to = 300 }");
     is_about(BLOCK, &[&hole], [1.0, 4.0]);
     is_about(BLOCK, &[&with("box = { lower = [1.0, 1.0, 1.5], upper = [1.5, 2.0, 3.0] }")], [0.5, 2.0]);
     let turned = with("revolve = { polygon = [[0, 0.5], [0.5, 0.5], [0.5, 3], [0, 3]], about = [1.5, 1.5] }");
@@ -154,7 +154,7 @@ fn too_few_cells_are_warned_of() {
 
 /// The text without its cells, points and steps, for a preset.
 fn preset(word: &str) -> String {
-    let text = PLATE.replace(", cell = 0.1, order = \"quadratic\"", "").replace(", steps = 1", "");
+    let text = PLATE.replace(", cell = 0.1, degree = \"quadratic\"", "").replace(", steps = 1", "");
     text.replace("points_per_cell = 2\n", "").replace("analysis", &format!("accuracy = \"{word}\"\nanalysis"))
 }
 
@@ -175,8 +175,8 @@ fn presets_make_small_cells_at_holes() {
         assert!((case.analysis.dt * if word == "reference" { 20.0 } else { 10.0 } - 1.0).abs() < 1e-12);
     }
     // Where cells are squares because of a band_width, all of them are as small.
-    let softening = "material.elastic={ model = \"mohr-coulomb-softening\", young = 1e7, poisson = 0.3, friction = 30, \
-                     cohesion = 1e3, residual_friction = 25, residual_cohesion = 0, softening_strain = 0.1, band_width = 0.1 }";
+    let softening = "material.elastic={ model = \"mohr-coulomb-softening\", young = 1e7, poisson = 0.3, friction_angle = 30, \
+                     cohesion = 1e3, residual_friction_angle = 25, residual_cohesion = 0, softening_strain = 0.1, band_width = 0.1 }";
     let case = valid(&preset("draft"), &[softening]);
     assert!(case.grid.axes.iter().all(|axis| axis.longest() <= 0.126), "{:?}", case.grid.axes);
 }

@@ -7,8 +7,8 @@ use std::collections::HashSet;
 /// A quasi-static case on `grid` with the bodies' `boxes` ([x0, y0, x1, y1]) and `n` points per cell.
 fn case(grid: &str, boxes: &[[f64; 4]], n: usize) -> Case {
     let mut text = format!(
-        "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nsteps = 1\n[grid]\norder = \"linear\"\n{grid}\n\
-         [material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n[boundary]\nleft = \"fixed\"\nbottom = \"fixed\"\n"
+        "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nsteps = 1\n[grid]\ndegree = \"linear\"\n{grid}\n\
+         [material.m]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n[boundary]\nleft = \"fixed\"\nbottom = \"fixed\"\n"
     );
     for [x0, y0, x1, y1] in boxes {
         text += &format!(

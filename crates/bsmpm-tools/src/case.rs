@@ -1,7 +1,9 @@
 //! The case file of a command.
 
+use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use bsmpm_scene::Case;
 
@@ -17,7 +19,21 @@ pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
 
 /// The case that overrides `KEY=VALUE` make of the bytes of its file.
 pub(crate) fn parsed(path: &Path, bytes: &[u8], set: &[String]) -> Result<Case, Error> {
-    Case::from_bytes(&path.display().to_string(), bytes, set).map_err(|errors| Error::bad_case(path, &errors))
+    let case =
+        Case::from_bytes(&path.display().to_string(), bytes, set).map_err(|errors| Error::bad_case(path, &errors))?;
+    note_renamings(&case);
+    Ok(case)
+}
+
+/// Notes on standard error which earlier names a case has; each only once, however often the case is read.
+fn note_renamings(case: &Case) {
+    static NOTED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
+    for renaming in &case.renamings {
+        if noted.insert(renaming.clone()) {
+            eprintln!("bsmpm: note: {renaming}");
+        }
+    }
 }
 
 /// The same for the tests of one material point alone.

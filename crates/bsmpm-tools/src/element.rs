@@ -39,7 +39,7 @@ Exit codes: 0 done; 2 command line; 65 the case has errors, or no such test; 66 
 
 Examples:
   bsmpm element case.toml
-  bsmpm element case.toml tx100 tx200 --set material.sand.friction=36
+  bsmpm element case.toml tx100 tx200 --set material.sand.friction_angle=36
   bsmpm element case.toml --material till --set element.tx100.pressure=\"200 kPa\"")]
 pub struct ElementArguments {
     /// The case file

@@ -45,7 +45,7 @@ of a run that did not come to its end.
 
 Examples:
   bsmpm limit-load footing.toml
-  bsmpm limit-load footing.toml --grids 3 --set material.sand.friction=35")]
+  bsmpm limit-load footing.toml --grids 3 --set material.sand.friction_angle=35")]
 pub struct LimitLoadArguments {
     /// The case file
     pub case: PathBuf,

@@ -46,9 +46,9 @@ impl RunRecord {
         })
     }
 
-    /// Whether it is in three dimensions, and pictures show a section.
+    /// Whether it is in three dimensions, and pictures show a section. Runs of earlier versions say `solid`.
     pub fn is_solid(&self) -> bool {
-        self.manifest.case.geometry == "solid"
+        ["3d", "solid"].contains(&self.manifest.case.geometry.as_str())
     }
 
     /// The axes that pictures show: the one to the right and the one upwards.

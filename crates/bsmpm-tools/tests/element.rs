@@ -64,9 +64,9 @@ fn a_strength_by_depth_in_a_solid_is_that_of_the_height_along_z() {
     let directory = tempfile::tempdir().unwrap();
     let case = directory.path().join("case.toml");
     let text = r#"
-        geometry = "solid"
+        geometry = "3d"
         analysis = { type = "quasi-static", steps = 1 }
-        grid = { lower = [0, -10, -5], upper = [1, -9, 0], cell = 1, order = "quadratic" }
+        grid = { lower = [0, -10, -5], upper = [1, -9, 0], cell = 1, degree = "quadratic" }
         boundary = { bottom = "fixed" }
         [material.clay]
         model = "tresca"
@@ -121,15 +121,15 @@ fn cam_clay_is_tested_without_a_stress_of_the_ground_at_the_start() {
     let text = r#"
         geometry = "plane-strain"
         analysis = { type = "quasi-static", steps = 1 }
-        grid = { lower = [0, 0], upper = [1, 1], cell = 0.5, order = "quadratic" }
+        grid = { lower = [0, 0], upper = [1, 1], cell = 0.5, degree = "quadratic" }
         boundary = { bottom = "fixed" }
         [material.clay]
         model = "modified-cam-clay"
         young = "10 MPa"
         poisson = 0.3
-        kappa = 0.02
-        lambda = 0.12
-        critical_ratio = 1.0
+        kappa_star = 0.02
+        lambda_star = 0.12
+        critical_state_ratio = 1.0
         preconsolidation = "200 kPa"
         [[body]]
         material = "clay"

@@ -160,7 +160,7 @@ fn a_finished_run_is_set_beside_it() {
     let output = bench.estimate(&["column.toml", "--no-probe", "--against", "column.out"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("actual, 1 rank(s)") && text.contains("estimated / actual"), "{text}");
-    let told = bench.estimate(&["column.toml", "--no-probe", "--against", "column.out", "--set", "grid.order=cubic"]);
+    let told = bench.estimate(&["column.toml", "--no-probe", "--against", "column.out", "--set", "grid.degree=cubic"]);
     assert!(String::from_utf8(told.stderr).unwrap().contains("another text of the case"));
 }
 
@@ -180,7 +180,7 @@ fn errors_have_the_codes_of_the_other_commands() {
     assert_eq!(code(&["column.toml"]), Some(71));
     assert_eq!(code(&["nowhere.toml"]), Some(66));
     assert_eq!(code(&["column.toml", "--against", "nowhere"]), Some(66));
-    assert_eq!(code(&["column.toml", "--set", "grid.order=quartic"]), Some(65));
+    assert_eq!(code(&["column.toml", "--set", "grid.degree=quartic"]), Some(65));
     for bad in [&["--budget", "-1"][..], &["--budget", "nan"], &["--ranks", "0"], &["--ranks", "59"]] {
         assert_eq!(code(&[&["column.toml"], bad].concat()), Some(2), "{bad:?}");
     }

@@ -107,7 +107,7 @@ fn material(
     (dynamic, start): (bool, FuzzStart),
     text: &mut String,
 ) -> Result<()> {
-    let model = quoted(u, &["hencky", "mohr-coulomb", "tresca", "drucker-prager", "von-mises"])?;
+    let model = quoted(u, &["elastic", "mohr-coulomb", "tresca", "drucker-prager", "von-mises"])?;
     let poisson = if u.ratio(1, 8)? { 0.5 - size(u, -9.0, -1.0)? } else { between(u, -0.5, 0.499)? };
     let young = size(u, 0.0, 11.0)?;
     line(text, &format!("[material.m{number}]\nmodel = \"{model}\"\npoisson = {poisson:?}"));
@@ -121,16 +121,16 @@ fn material(
     if model == "von-mises" {
         let (strength, hardening) = (young * size(u, -8.0, 0.0)?, young * size(u, -8.0, 0.0)?);
         line(text, &format!("yield_stress = {strength:?}\nhardening = {hardening:?}"));
-    } else if model != "hencky" {
+    } else if model != "elastic" {
         let cohesion = if closing || u.ratio(1, 4)? { 0.0 } else { young * size(u, -8.0, 0.0)? };
         line(text, &format!("cohesion = {cohesion:?}"));
     }
     if closing {
-        line(text, "separation = \"closing\"");
+        line(text, "separation = \"gap\"");
     }
     if ["mohr-coulomb", "drucker-prager"].contains(&model) {
         let friction = between(u, if closing { 1.0 } else { 0.0 }, 60.0)?;
-        line(text, &format!("friction = {friction:?}\ndilation = {:?}", friction * between(u, 0.0, 1.0)?));
+        line(text, &format!("friction_angle = {friction:?}\ndilation_angle = {:?}", friction * between(u, 0.0, 1.0)?));
     }
     if dynamic || u.ratio(3, 4)? {
         line(text, &format!("density = {:?}", size(u, 0.0, 5.0)?));

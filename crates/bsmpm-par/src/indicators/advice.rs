@@ -28,9 +28,9 @@ pub(super) fn of(name: &str, case: &Case) -> String {
             "points there keep velocities that the grid holds, and are not braked by the wall as they should be: \
              layers of a cell slide too far. {}",
             match (case.analysis.wall_velocity, case.analysis.mass) {
-                (WallVelocity::Relaxed, _) => "Use smaller cells, or a face with { friction = ... }.",
+                (WallVelocity::Relaxed, _) => "Use smaller cells, or a face with { friction_coefficient = ... }.",
                 (WallVelocity::Own, MassMatrix::Lumped) => {
-                    "Set analysis.wall_velocity = \"relaxed\", use smaller cells, or a face with { friction = ... }."
+                    "Set analysis.wall_velocity = \"relaxed\", use smaller cells, or a face with { friction_coefficient = ... }."
                 }
                 (WallVelocity::Own, MassMatrix::Consistent) => {
                     "Set analysis.wall_velocity = \"relaxed\", or use smaller cells."

@@ -193,9 +193,9 @@ mod tests {
         lower = [0, 0]
         upper = [2, 2]
         cell = 1.0
-        order = "quadratic"
+        degree = "quadratic"
         [material.elastic]
-        model = "hencky"
+        model = "elastic"
         young = 1e6
         poisson = 0.0
         density = 1000.0

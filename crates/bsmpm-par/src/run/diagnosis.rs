@@ -119,7 +119,7 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
                      without strength or dilates, consistent-f-bar less, none none"
                 }
             },
-            "where bodies meet a face in contact: shorter steps, or [analysis] gamma = 1",
+            "where bodies meet a face in contact: shorter steps, or [analysis] newmark_gamma = 1",
             "a smaller dilation, or some friction; see where it begins: [[history]] quantity = \"energy\", and the frames",
             "the state that is saved is wrong, too: do not go on from it",
         ],
@@ -134,10 +134,21 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
              is loaded",
             "a larger [solver] force_tolerance",
         ],
-        StepError::Loose { .. } => &[
-            "a quasi-static analysis knows no rigid body that nothing holds: leave a motion out of `free`, let it start on the \
-             soil, or make the analysis dynamic",
-        ],
+        StepError::Loose { body } => {
+            let rigid = &case.rigid[*body];
+            let cause = match rigid.friction > 0.0 {
+                true => format!(
+                    "its friction (friction_coefficient = {}) is used up, or it does not touch the soil",
+                    rigid.friction
+                ),
+                false => "it has no friction, or does not touch the soil".to_owned(),
+            };
+            return vec![format!(
+                "rigid `{}` slides or falls: {cause}. Reduce its force, increase friction_coefficient, leave that motion out of \
+                 `free`, or make the analysis dynamic",
+                rigid.name
+            )];
+        }
         StepError::Overlapping { bodies } => {
             let [one, other] = bodies.map(|number| case.rigid[number].name.as_str());
             return vec![format!(

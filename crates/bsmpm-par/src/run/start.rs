@@ -17,6 +17,9 @@ const UNBALANCED: f64 = 0.02;
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Tells what is to be told, and gives the points their stress at the start. Fails on all ranks.
     pub(super) fn begin(&mut self) -> Result<(), StepError> {
+        for renaming in &self.case.renamings {
+            self.log.line("note", &format!("note: {renaming}"));
+        }
         if let Some(ledger) = &mut self.ledger {
             for warning in ledger.news() {
                 self.log.line("warning", &format!("warning: {warning}"));

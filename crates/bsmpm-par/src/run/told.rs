@@ -143,7 +143,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 self.warn(format!(
                     "{name}: at t = {t} points of it that were neighbours at the start are {:.1} cells apart: the ground has come \
                      apart or is stretched between them, and its new surface there is closed, so that no water seeps out of it or \
-                     goes in; hold the result against that of drainage = \"given\", the other bound",
+                     goes in; hold the result against that of drainage = \"hydrostatic\", the other bound",
                     water.torn[number]
                 ));
             }

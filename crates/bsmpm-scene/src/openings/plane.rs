@@ -37,7 +37,7 @@ impl PlaneShape {
             return Some(Self { corners: vec![[x, y], [to_x, y], [to_x, to_y], [x, to_y]], is_round: false });
         }
         if let Some(circle) = record.record("circle") {
-            let ([x, y], radius) = (circle.pair("center")?, circle.number("radius")?);
+            let ([x, y], radius) = (circle.pair("centre")?, circle.number("radius")?);
             let angle = std::f64::consts::TAU / SIDES as f64;
             let radius = radius / (0.5 * angle).cos();
             let corner = |k: usize| {

@@ -22,7 +22,7 @@ pub(crate) fn surface_points(record: &Record, bounds: [[f64; 3]; 2]) -> Option<V
     }
     if record.gives("sphere") {
         let shape = record.record("sphere")?;
-        return Some(sphere(shape.vector("center")?.into(), shape.number("radius")?));
+        return Some(sphere(shape.vector("centre")?.into(), shape.number("radius")?));
     }
     if record.gives("extrude") {
         return extruded(record.record("extrude")?, bounds);

@@ -37,7 +37,7 @@ pub(super) fn fill(
     let scene = PresetScene::of(&record);
     let choice = Choice { key: KEY, word: purpose.word(), origin };
     let mut filling = Completion { document, choice, report, filled: false };
-    filling.put("grid", &["order"], &quoted(ORDER), "");
+    filling.put("grid", &["degree"], &quoted(ORDER), "");
     filling.points(POINTS);
     filling.put("analysis", &["steps", "dt"], STEPS, "with fewer, steps near failure are cut");
     let (method, why) = match scene.dilates() {

@@ -40,7 +40,7 @@ impl Outline {
             return (!corners.is_empty()).then(|| Self { bounds: region::bounds(&corners), corners });
         }
         let circle = rigid.record("circle")?;
-        let (center, radius) = (circle.pair("center")?, circle.number("radius")?);
+        let (center, radius) = (circle.pair("centre")?, circle.number("radius")?);
         Some(Self { corners: Vec::new(), bounds: [-radius, radius].map(|by| center.map(|at| at + by)) })
     }
 

@@ -111,8 +111,8 @@ impl<'a> PresetScene<'a> {
     pub(super) fn dilates(&self) -> bool {
         let is_positive = |angle: f64| angle > 0.0;
         let dilates = |material: &Record| {
-            let profile = material.record("dilation").and_then(|profile| profile.number("value"));
-            material.number("dilation").or(profile).is_some_and(is_positive)
+            let profile = material.record("dilation_angle").and_then(|profile| profile.number("value"));
+            material.number("dilation_angle").or(profile).is_some_and(is_positive)
         };
         self.materials().any(dilates)
     }
@@ -282,7 +282,7 @@ pub(crate) fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
         return Some([shape.pair("lower")?, shape.pair("upper")?]);
     }
     if let Some(circle) = body.record("circle") {
-        let (center, radius) = (circle.pair("center")?, circle.number("radius")?);
+        let (center, radius) = (circle.pair("centre")?, circle.number("radius")?);
         return Some([-radius, radius].map(|reach| center.map(|x| x + reach)));
     }
     let corners: Vec<[f64; 2]> = body.rows("polygon")?.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();

@@ -19,7 +19,7 @@ impl PresetScene<'_> {
             return None;
         }
         let order = super::ORDER;
-        let order = self.root.record("grid").and_then(|grid| grid.word("order")).unwrap_or(order);
+        let order = self.root.record("grid").and_then(|grid| grid.word("degree")).unwrap_or(order);
         let fewest = fewest_cells(self.mass(), order.degree());
         let inputs = inputs(self.root);
         let cells = inputs.iter().filter_map(|input| Some((input, self.slowest(input)? / (input.frequency * fewest))));
@@ -54,7 +54,9 @@ impl PresetScene<'_> {
         let strips = self.root.record("footing").into_iter().chain(self.root.records("prescribed"));
         boundaries.any(|boundary| Side::ALL.as_flattened().iter().any(|side| in_contact(boundary, *side)))
             || !self.root.records("rigid").is_empty()
-            || strips.into_iter().any(|strip| ["base", "components"].into_iter().any(|key| strip.record(key).is_some()))
+            || strips
+                .into_iter()
+                .any(|strip| ["interface", "components"].into_iter().any(|key| strip.record(key).is_some()))
     }
 
     /// m/s  slowest elastic wave that an input makes in the bodies' materials, at the middle of their height

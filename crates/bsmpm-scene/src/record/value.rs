@@ -125,11 +125,8 @@ impl ValueReader<'_, '_> {
     /// What a solid wants three numbers of.
     fn not_of_three<T>(&mut self, node: &Node, dimension: Dimension) -> Option<T> {
         let unit = if dimension == Dimension::LineForce { ", in N" } else { "" };
-        let message = format!(
-            "expected {}, found {}: in a solid it has three components, [x, y, z]{unit}",
-            self.kind,
-            node.show()
-        );
+        let message =
+            format!("expected {}, found {}: in 3-D it has three components, [x, y, z]{unit}", self.kind, node.show());
         self.fail(node, message)
     }
 

@@ -11,14 +11,14 @@ pub(super) static BODY: Table = Table {
     keys: &[
         key("material", Name, Required, "name of its material"),
         key("name", Name, Optional, "what stages and histories call it"),
-        key("box", Kind::Table(&BOX), Optional, "a rectangle, of a solid a cuboid"),
+        key("box", Kind::Table(&BOX), Optional, "a rectangle, in 3-D a cuboid"),
         key("polygon", POLYGON, Optional, "corners of a polygon, in either direction; its points are those inside"),
         key("circle", Kind::Table(&CIRCLE), Optional, "a circle; its points are those inside"),
-        key("extrude", Kind::Table(&EXTRUDE), Optional, "of a solid: an outline along an axis, e.g. a cylinder"),
-        key("sphere", Kind::Table(&SPHERE), Optional, "of a solid: a sphere"),
-        key("revolve", Kind::Table(&REVOLVE), Optional, "of a solid: an outline about a vertical"),
-        key("terrain", Kind::Table(&TERRAIN), Optional, "of a solid: what lies under a raster of heights"),
-        key("surface", Kind::Table(&SURFACE), Optional, "of a solid: what a closed surface of triangles encloses"),
+        key("extrude", Kind::Table(&EXTRUDE), Optional, "in 3-D: an outline along an axis, e.g. a cylinder"),
+        key("sphere", Kind::Table(&SPHERE), Optional, "in 3-D: a sphere"),
+        key("revolve", Kind::Table(&REVOLVE), Optional, "in 3-D: an outline about a vertical"),
+        key("terrain", Kind::Table(&TERRAIN), Optional, "in 3-D: what lies under a raster of heights"),
+        key("surface", Kind::Table(&SURFACE), Optional, "in 3-D: what a closed surface of triangles encloses"),
         key("subtract", Tables(&SUBTRACT), Optional, "shapes that are cut out"),
         key("points_per_cell", Count(1, 100), Required, "points along each axis of a cell"),
         key("velocity", Vector(In::Velocity, Range::ANY), Optional, "at the start; absent: at rest"),
@@ -41,17 +41,17 @@ static SPIN: Table = Table {
             "axis",
             Vector(In::Number, Range::ANY),
             Optional,
-            "of a solid: towards where it is seen to turn so; up unless given",
+            "in 3-D: towards where it is seen to turn so; up unless given",
         ),
     ],
     exclusive: &[],
 };
 
 pub(super) static CIRCLE: Table = Table {
-    header: "circle = { center, radius }",
+    header: "circle = { centre, radius }",
     doc: "A circle",
     keys: &[
-        key("center", Pair(In::Length, Range::ANY), Required, "its centre"),
+        key("centre", Pair(In::Length, Range::ANY), Required, "its centre").renamed_from(&["center"]),
         key("radius", Quantity(In::Length, Range::POSITIVE), Required, "its radius"),
     ],
     exclusive: &[],
@@ -64,11 +64,11 @@ static SUBTRACT: Table = Table {
         key("box", Kind::Table(&BOX), Optional, "a rectangle"),
         key("polygon", POLYGON, Optional, "corners of a polygon, in either direction"),
         key("circle", Kind::Table(&CIRCLE), Optional, "a circle"),
-        key("extrude", Kind::Table(&EXTRUDE), Optional, "of a solid: an outline along an axis"),
-        key("sphere", Kind::Table(&SPHERE), Optional, "of a solid: a sphere"),
-        key("revolve", Kind::Table(&REVOLVE), Optional, "of a solid: an outline about a vertical"),
-        key("terrain", Kind::Table(&TERRAIN), Optional, "of a solid: what lies under a raster of heights"),
-        key("surface", Kind::Table(&SURFACE), Optional, "of a solid: what a closed surface of triangles encloses"),
+        key("extrude", Kind::Table(&EXTRUDE), Optional, "in 3-D: an outline along an axis"),
+        key("sphere", Kind::Table(&SPHERE), Optional, "in 3-D: a sphere"),
+        key("revolve", Kind::Table(&REVOLVE), Optional, "in 3-D: an outline about a vertical"),
+        key("terrain", Kind::Table(&TERRAIN), Optional, "in 3-D: what lies under a raster of heights"),
+        key("surface", Kind::Table(&SURFACE), Optional, "in 3-D: what a closed surface of triangles encloses"),
     ],
     exclusive: &[one_of(SHAPES, true)],
 };
@@ -119,10 +119,10 @@ static EXTRUDE: Table = Table {
 };
 
 pub(super) static SPHERE: Table = Table {
-    header: "sphere = { center, radius }",
+    header: "sphere = { centre, radius }",
     doc: "A sphere",
     keys: &[
-        key("center", Vector(In::Length, Range::ANY), Required, "its centre"),
+        key("centre", Vector(In::Length, Range::ANY), Required, "its centre").renamed_from(&["center"]),
         key("radius", Quantity(In::Length, Range::POSITIVE), Required, "its radius"),
     ],
     exclusive: &[],
@@ -141,7 +141,7 @@ pub(super) static REVOLVE: Table = Table {
 
 pub(super) static BOX: Table = Table {
     header: "box = { lower, upper }",
-    doc: "A rectangle, of a solid a cuboid, along the axes; it may cut cells",
+    doc: "A rectangle, in 3-D a cuboid, along the axes; it may cut cells",
     keys: &[
         key("lower", Vector(In::Length, Range::ANY), Required, "lower corner"),
         key("upper", Vector(In::Length, Range::ANY), Required, "upper corner"),

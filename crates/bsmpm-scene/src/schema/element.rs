@@ -14,7 +14,7 @@ pub(super) static ELEMENT: Table = Table {
             "height",
             Quantity(In::Length, Range::ANY),
             Optional,
-            "y of the point, of a solid z, for parameters that depend on the height (required then)",
+            "y of the point, in 3-D z, for parameters that depend on the height (required then)",
         ),
         key(
             "pressure",

@@ -18,13 +18,13 @@ pub(super) static DRAIN: Table = Table {
             Choice(Side::WORDS),
             Optional,
             "a face of the grid, at which bodies lie, which does not go with the ground: where that settles from it, or \
-             goes away, name the body's surface; of a solid this, a rectangle or a disc",
+             goes away, name the body's surface; in 3-D this, a rectangle or a disc",
         ),
         key("from", PLACE, Optional, "one end of a segment of a body's surface at the start"),
         key("to", PLACE, Optional, "the other end"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
-        key("rectangle", loads::RECTANGLE, Optional, "of a solid: a box whose corners are alike along one axis"),
-        key("disc", Kind::Table(&loads::DISC), Optional, "of a solid: a disc, the part of it inside the grid"),
+        key("rectangle", loads::RECTANGLE, Optional, "in 3-D: a box whose corners are alike along one axis"),
+        key("disc", Kind::Table(&loads::DISC), Optional, "in 3-D: a disc, the part of it inside the grid"),
         key(
             "surface",
             Flag,
@@ -62,7 +62,7 @@ pub(super) static DRAIN: Table = Table {
 
 pub(super) static INFLOW: Table = Table {
     header: "[[inflow]]",
-    doc: "Water that is put in through a segment of a body's surface (solid: a rectangle or disc), with which it goes",
+    doc: "Water that is put in through a segment of a body's surface (3-D: a rectangle or disc), with which it goes",
     keys: &[
         key("name", Name, Optional, "what it is called where it is told of, and by stages"),
         key(
@@ -73,13 +73,8 @@ pub(super) static INFLOW: Table = Table {
         ),
         key("from", PLACE, Optional, "one end of the segment at the start"),
         key("to", PLACE, Optional, "the other end"),
-        key(
-            "rectangle",
-            loads::RECTANGLE,
-            Optional,
-            "of a solid, instead: a box whose corners are alike along one axis",
-        ),
-        key("disc", Kind::Table(&loads::DISC), Optional, "of a solid, instead: a disc, the part of it inside the grid"),
+        key("rectangle", loads::RECTANGLE, Optional, "in 3-D, instead: a box whose corners are alike along one axis"),
+        key("disc", Kind::Table(&loads::DISC), Optional, "in 3-D, instead: a disc, the part of it inside the grid"),
         key("rate", Quantity(In::Seepage, Range::ANY), Optional, "volume of water per area and time, into the ground"),
         key(
             "rate_path",
@@ -88,11 +83,12 @@ pub(super) static INFLOW: Table = Table {
             "rows [t, rate] instead, t increasing; linear between, constant before the first and after the last",
         ),
         key(
-            "runs_off",
+            "runoff",
             Flag,
             super::Presence::Default("false"),
             "true: no more goes in than without pressure at the surface: rain",
-        ),
+        )
+        .renamed_from(&["runs_off"]),
     ],
     exclusive: &[
         one_of(&["face", "from", "rectangle", "disc"], true),

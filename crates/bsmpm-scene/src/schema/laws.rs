@@ -16,7 +16,7 @@ choice! {
     /// Constitutive law.
     pub enum LawName {
         /// Elastic at any strain.
-        Hencky = "hencky",
+        Hencky = "elastic",
         /// Elastic, perfectly plastic with friction, dilation and cohesion.
         MohrCoulomb = "mohr-coulomb",
         /// The same without friction.
@@ -33,7 +33,18 @@ choice! {
         CamClay = "modified-cam-clay",
         /// Dense granular flow whose friction grows with the rate of shear.
         MuI = "mu-i",
-    }
+    } misnomers [
+        "hardening-soil": "not available; use \"mohr-coulomb\", or \"modified-cam-clay\" for soft clay",
+        "hs-small": "not available; use \"mohr-coulomb\", or \"modified-cam-clay\" for soft clay",
+        "soft-soil": "not available; use \"modified-cam-clay\"",
+        "cam-clay": "not available; use \"modified-cam-clay\"",
+        "hoek-brown": "not available; use \"mohr-coulomb\" with the strength at the stress level of the problem",
+        "hypoplastic": "not available; use \"mohr-coulomb-softening\"",
+        "hypoplasticity": "not available; use \"mohr-coulomb-softening\"",
+        "linear-elastic": "\"elastic\" is elastic at any strain",
+        "linear_elastic": "\"elastic\" is elastic at any strain",
+        "neo-hookean": "not available; use \"elastic\""
+    ] earlier ["hencky": "elastic"]
 }
 
 impl LawName {
@@ -51,17 +62,20 @@ impl LawName {
         match self {
             Self::Hencky => (&[], &[]),
             Self::Tresca => (&["cohesion"], &[]),
-            Self::MohrCoulomb => (&["friction", "cohesion"], &["dilation", "separation", "ocr"]),
-            Self::DruckerPrager => (&["friction", "cohesion"], &["dilation", "match", "ocr"]),
+            Self::MohrCoulomb => (&["friction_angle", "cohesion"], &["dilation_angle", "separation", "ocr"]),
+            Self::DruckerPrager => (&["friction_angle", "cohesion"], &["dilation_angle", "fit", "ocr"]),
             Self::VonMises => (&["yield_stress"], &["hardening"]),
             Self::SensitiveClay => {
                 (&["cohesion", "sensitivity", "softening_strain"], &["band_width", "rate_parameter", "reference_rate"])
             }
-            Self::CamClay => (&["kappa", "lambda", "critical_ratio"], &["preconsolidation", "ocr"]),
+            Self::CamClay => (
+                &["critical_state_ratio"],
+                &["kappa_star", "lambda_star", "kappa", "lambda", "void_ratio", "preconsolidation", "ocr"],
+            ),
             Self::MuI => (&["mu_s", "mu_2", "inertial_number", "grain_diameter", "grain_density"], &[]),
             Self::Softening => (
-                &["friction", "cohesion", "residual_friction", "residual_cohesion", "softening_strain"],
-                &["dilation", "residual_dilation", "softening", "band_width", "ocr"],
+                &["friction_angle", "cohesion", "residual_friction_angle", "residual_cohesion", "softening_strain"],
+                &["dilation_angle", "residual_dilation_angle", "softening", "band_width", "ocr"],
             ),
         }
     }
@@ -75,7 +89,7 @@ impl LawName {
                 Material::MohrCoulomb(MohrCoulomb::new(elastic, 0.0, 0.0, 0.0).separating(separation))
             }
             Self::DruckerPrager => {
-                let fit = record.word("match").unwrap_or_default();
+                let fit = record.word("fit").unwrap_or_default();
                 Material::DruckerPrager(DruckerPrager::new(elastic, (0.0, 0.0, 0.0), fit))
             }
             Self::SensitiveClay => {
@@ -100,9 +114,9 @@ impl LawName {
 }
 
 words! { Separation {
-    Forgotten = "forgotten": "volume that opens is plastic",
-    Closing = "closing": "volume that opens is a gap that closes first",
-} }
+    Forgotten = "plastic": "volume that opens is plastic",
+    Closing = "gap": "volume that opens is a gap that closes first",
+} earlier ["forgotten": "plastic", "closing": "gap"] }
 
 words! { Decay {
     Linear = "linear": "in proportion to the plastic strain, until it is softening_strain",
@@ -112,7 +126,7 @@ words! { Decay {
 words! { Match {
     Outer = "outer": "in triaxial compression; stronger than Mohr-Coulomb elsewhere",
     Inner = "inner": "in triaxial extension; weaker in compression",
-    PlaneStrain = "plane-strain": "as strong in plane strain with associated flow (dilation = friction), weaker with less",
+    PlaneStrain = "plane-strain": "as strong in plane strain with associated flow (dilation_angle = friction_angle), weaker with less",
 } }
 
 pub(crate) static MATERIAL: Table = Table {
@@ -123,35 +137,35 @@ pub(crate) static MATERIAL: Table = Table {
         key("young", Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE), Required, "Young's modulus"),
         key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio"),
         key(
-            "friction",
+            "friction_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
             "friction angle (mohr-coulomb, drucker-prager and mohr-coulomb-softening, before any plastic strain: required)",
-        ),
+        ).renamed_from(&["friction"]),
         key(
-            "dilation",
+            "dilation_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "dilation angle, at most friction; 0 unless given",
-        ),
+            "dilation angle, at most friction_angle; 0 unless given",
+        ).renamed_from(&["dilation"]),
         key(
             "cohesion",
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
             Optional,
-            "cohesion (hencky and von-mises: none; else required)",
+            "cohesion (elastic and von-mises: none; else required)",
         ),
         key(
-            "residual_friction",
+            "residual_friction_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
             "friction angle after softening_strain (mohr-coulomb-softening: required)",
-        ),
+        ).renamed_from(&["residual_friction"]),
         key(
-            "residual_dilation",
+            "residual_dilation_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "dilation angle after softening_strain, at most residual_friction; 0 unless given",
-        ),
+            "dilation angle after softening_strain, at most residual_friction_angle; 0 unless given",
+        ).renamed_from(&["residual_dilation"]),
         key(
             "residual_cohesion",
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
@@ -195,25 +209,45 @@ pub(crate) static MATERIAL: Table = Table {
              cells of one size only); without it results depend on the cells",
         ),
         key(
-            "kappa",
+            "kappa_star",
             Quantity(In::Number, BELOW_1),
             Optional,
-            "slope of swelling, ln v over ln p: that over e divided by 1 + e (modified-cam-clay: required); the bulk \
-             modulus is p/kappa, the shear modulus that of young and poisson, which hold together at one pressure",
+            "kappa*, slope of the unloading line in ln v over ln p' (modified-cam-clay: required, or kappa with void_ratio); \
+             the bulk modulus is p'/kappa*, the shear modulus that of young and poisson, which hold together at one pressure",
+        ),
+        key(
+            "lambda_star",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "lambda*, slope of the normal compression line in ln v over ln p', above kappa_star (modified-cam-clay: \
+             required, or lambda with void_ratio)",
+        ),
+        key(
+            "kappa",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "kappa, slope of the unloading line in v over ln p', instead of kappa_star: kappa* = kappa / (1 + void_ratio)",
         ),
         key(
             "lambda",
-            Quantity(In::Number, BELOW_1),
+            Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "slope of first loading, ln v over ln p, above kappa (modified-cam-clay: required)",
+            "lambda, slope of the normal compression line in v over ln p', instead of lambda_star: lambda* = lambda / \
+             (1 + void_ratio)",
         ),
         key(
-            "critical_ratio",
+            "void_ratio",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "e0, void ratio at the start (modified-cam-clay: required with kappa and lambda)",
+        ),
+        key(
+            "critical_state_ratio",
             Quantity(In::Number, BELOW_3),
             Optional,
             "M = q/p at the critical state, 6 sin(phi)/(3 - sin(phi)) in triaxial compression (modified-cam-clay: \
              required); the same in all directions of shear",
-        ),
+        ).renamed_from(&["critical_ratio"]),
         key(
             "preconsolidation",
             Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
@@ -244,11 +278,11 @@ pub(crate) static MATERIAL: Table = Table {
         key("grain_diameter", Quantity(In::Length, Range::POSITIVE), Optional, "of the grains (mu-i: required)"),
         key("grain_density", Quantity(In::Density, Range::POSITIVE), Optional, "of the grains (mu-i: required)"),
         key(
-            "match",
+            "fit",
             Choice(Match::WORDS),
             Optional,
             "where drucker-prager meets mohr-coulomb; plane-strain unless given, which is warned of where it is none",
-        ),
+        ).renamed_from(&["match"]),
         key(
             "yield_stress",
             Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
@@ -265,7 +299,7 @@ pub(crate) static MATERIAL: Table = Table {
             "separation",
             Choice(Separation::WORDS),
             Optional,
-            "volume that opens at the apex of mohr-coulomb: plastic, or a gap that closes first; forgotten unless given",
+            "volume that opens at the apex of mohr-coulomb: plastic, or a gap that closes first; plastic unless given",
         ),
         key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
         key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
@@ -319,7 +353,7 @@ pub(crate) static MATERIAL: Table = Table {
             "viscous stress beside that of the law (dynamic); none unless given",
         ),
     ],
-    exclusive: &[one_of(&["unit_weight", "density"], false), one_of(&["preconsolidation", "ocr"], false)],
+    exclusive: &[one_of(&["unit_weight", "density"], false), one_of(&["preconsolidation", "ocr"], false), one_of(&["kappa_star", "kappa"], false), one_of(&["lambda_star", "lambda"], false)],
 };
 
 static RETENTION: Table = Table {

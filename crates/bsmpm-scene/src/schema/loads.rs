@@ -13,7 +13,7 @@ pub(super) const PATH: Kind = Course(In::Length);
 pub(super) const RECTANGLE: Kind = Kind::Table(&body::BOX);
 pub(super) const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
 /// Of a load whose direction may change.
-const FORCES: &str = "rows [t, x, y] instead (solid: also z), as they are at the times t, increasing; linear between, from \
+const FORCES: &str = "rows [t, x, y] instead (3-D: also z), as they are at the times t, increasing; linear between, from \
                       0 at time 0, constant after the last; time 0 is that of the stage that applies it";
 pub(super) const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
 /// That strength is divided by.
@@ -25,33 +25,35 @@ pub(super) const COEFFICIENT: Range = Range::of(Included(0.0), Included(100.0));
 pub(super) const SUPPORT: Kind = ChoiceOr(Support::WORDS, &CONTACT);
 
 static CONTACT: Table = Table {
-    header: "FACE = { friction, lifts }",
+    header: "FACE = { friction_coefficient, separates }",
     doc: "A face that material slides along with Coulomb friction, and comes off",
     keys: &[
         key(
-            "friction",
+            "friction_coefficient",
             Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
             Required,
             "tangent of the angle of friction between face and material; [strength_reduction] divides it, too",
-        ),
+        )
+        .renamed_from(&["friction"]),
         key(
-            "lifts",
+            "separates",
             Flag,
             Default("true"),
             "whether material comes off the face; false: it is held there both ways, and nothing rubs where it pulls",
-        ),
+        )
+        .renamed_from(&["lifts"]),
     ],
     exclusive: &[],
 };
 
 pub(super) static FOOTING: Table = Table {
     header: "[footing]",
-    doc: "A rigid strip, of a solid a plate, that moves on a given way and holds the material at its base (section 3.3)",
+    doc: "A rigid strip, in 3-D a plate, that moves on a given way and holds the material at its base (section 3.3)",
     keys: &[
         key("from", PLACE, Optional, "one end of its base at the start"),
         key("to", PLACE, Optional, "the other end"),
-        key("rectangle", RECTANGLE, Optional, "of a solid, instead: a box whose corners are alike along one axis"),
-        key("disc", Kind::Table(&DISC), Optional, "of a solid, instead: a disc, the part of it inside the grid"),
+        key("rectangle", RECTANGLE, Optional, "in 3-D, instead: a box whose corners are alike along one axis"),
+        key("disc", Kind::Table(&DISC), Optional, "in 3-D, instead: a disc, the part of it inside the grid"),
         key("displacement", DISPLACEMENT, Optional, "reached at the end, linear in time"),
         key("velocity", VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
         key(
@@ -61,11 +63,12 @@ pub(super) static FOOTING: Table = Table {
             "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
         ),
         key(
-            "base",
+            "interface",
             ChoiceOr(Base::WORDS, &RUBS),
             Default("\"smooth\""),
             "\"smooth\" holds the normal component, \"rough\" all; or a table: it rubs, and lets go",
-        ),
+        )
+        .renamed_from(&["base"]),
         key("name", Name, Optional, "what stages and histories call it; \"footing\" unless given"),
     ],
     exclusive: &[
@@ -76,10 +79,10 @@ pub(super) static FOOTING: Table = Table {
 };
 
 pub(super) static DISC: Table = Table {
-    header: "disc = { center, radius, normal }",
+    header: "disc = { centre, radius, normal }",
     doc: "A flat disc",
     keys: &[
-        key("center", Vector(In::Length, Range::ANY), Required, "its centre"),
+        key("centre", Vector(In::Length, Range::ANY), Required, "its centre").renamed_from(&["center"]),
         key("radius", Quantity(In::Length, Range::POSITIVE), Required, "its radius"),
         key("normal", Choice(Axis::WORDS), Default("\"z\""), "the axis that is normal to it"),
     ],
@@ -88,13 +91,13 @@ pub(super) static DISC: Table = Table {
 
 pub(super) static PRESCRIBED: Table = Table {
     header: "[[prescribed]]",
-    doc: "Motion of a face of the grid, or of a segment, of a solid of a plate, which holds the material at it",
+    doc: "Motion of a face of the grid, or of a segment, in 3-D of a plate, which holds the material at it",
     keys: &[
         key("face", Choice(Side::WORDS), Optional, "the face; free in [boundary]"),
         key("from", PLACE, Optional, "one end of a segment at the start"),
         key("to", PLACE, Optional, "the other end"),
-        key("rectangle", RECTANGLE, Optional, "of a solid: a box whose corners are alike along one axis"),
-        key("disc", Kind::Table(&DISC), Optional, "of a solid: a disc, the part of it inside the grid"),
+        key("rectangle", RECTANGLE, Optional, "in 3-D: a box whose corners are alike along one axis"),
+        key("disc", Kind::Table(&DISC), Optional, "in 3-D: a disc, the part of it inside the grid"),
         key("displacement", DISPLACEMENT, Optional, "reached at the end, linear in time"),
         key("velocity", VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
         key(
@@ -119,42 +122,44 @@ pub(super) static PRESCRIBED: Table = Table {
 };
 
 static RUBS: Table = Table {
-    header: "STRIP = { friction, lifts }",
+    header: "STRIP = { friction_coefficient, separates }",
     doc: "A strip that material slides along with Coulomb friction, and comes off; bodies lie on one side of it",
     keys: &[
         key(
-            "friction",
+            "friction_coefficient",
             Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
             Required,
             "tangent of the angle of friction between strip and material; [strength_reduction] divides it, too",
-        ),
+        )
+        .renamed_from(&["friction"]),
         key(
-            "lifts",
+            "separates",
             Flag,
             Default("true"),
             "whether material comes off the strip; false: it is held there both ways, and nothing rubs where it pulls",
-        ),
+        )
+        .renamed_from(&["lifts"]),
     ],
     exclusive: &[],
 };
 
 pub(super) static TRACTION: Table = Table {
     header: "[[traction]]",
-    doc: "A load on a segment of a body's surface, on a circle, or of a solid on a rectangle, disc, sphere or triangles, \
+    doc: "A load on a segment of a body's surface, on a circle, or in 3-D on a rectangle, disc, sphere or triangles, \
           which it follows",
     keys: &[
         key("from", PLACE, Optional, "one end of the segment at the start"),
         key("to", PLACE, Optional, "the other end"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
-        key("rectangle", RECTANGLE, Optional, "of a solid, instead: a box whose corners are alike along one axis"),
-        key("disc", Kind::Table(&DISC), Optional, "of a solid, instead: a disc, the part of it inside the grid"),
+        key("rectangle", RECTANGLE, Optional, "in 3-D, instead: a box whose corners are alike along one axis"),
+        key("disc", Kind::Table(&DISC), Optional, "in 3-D, instead: a disc, the part of it inside the grid"),
         key(
             "sphere",
             Kind::Table(&body::SPHERE),
             Optional,
-            "of a solid, instead: a sphere, the part of it inside the grid",
+            "in 3-D, instead: a sphere, the part of it inside the grid",
         ),
-        key("surface", Kind::Table(&body::SURFACE), Optional, "of a solid, instead: a surface of triangles at bodies"),
+        key("surface", Kind::Table(&body::SURFACE), Optional, "in 3-D, instead: a surface of triangles at bodies"),
         key(
             "stress",
             PairProfile(In::Stress, Range::ANY, &STRESSES_PROFILE),
@@ -201,7 +206,7 @@ pub(super) static SHAKING: Table = Table {
         "acceleration",
         Course(In::Acceleration),
         Required,
-        "rows [t, ax, ay], of a solid [t, ax, ay, az], t increasing; linear between, from 0 at time 0, and 0 after the last",
+        "rows [t, ax, ay], in 3-D [t, ax, ay, az], t increasing; linear between, from 0 at time 0, and 0 after the last",
     )],
     exclusive: &[],
 };
@@ -215,7 +220,7 @@ pub(super) static POINT_LOAD: Table = Table {
             "force",
             Vector(In::LineForce, Range::ANY),
             Optional,
-            "along the axes, per metre of thickness; in axisymmetry of the whole ring, and of a solid, in N",
+            "along the axes, per metre of thickness; in axisymmetry of the whole ring, and in 3-D, in N",
         ),
         key("force_path", Course(In::LineForce), Optional, FORCES),
         key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
@@ -298,10 +303,10 @@ pub(super) static INITIAL: Table = Table {
 pub(super) static STRESS_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of a stress",
     doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; of a \
-          solid the height is z",
+          3-D the height is z",
     keys: &[
         key("value", Quantity(In::Stress, Range::ANY), Required, "at the height at_y"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; of a solid z"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; in 3-D z"),
         key("per_metre", Gradient(In::Stress), Required, "growth per metre of depth"),
     ],
     exclusive: &[],
@@ -310,10 +315,10 @@ pub(super) static STRESS_PROFILE: Table = Table {
 static STRESSES_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of stresses",
     doc: "value + per_metre (at_y - y) along the axes: linear everywhere, above at_y too, by the height at the start; of a \
-          solid the height is z",
+          3-D the height is z",
     keys: &[
         key("value", Vector(In::Stress, Range::ANY), Required, "along the axes, at the height at_y"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; of a solid z"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; in 3-D z"),
         key("per_metre", GradientVector(In::Stress), Required, "growth per metre of depth, along the axes"),
     ],
     exclusive: &[],
@@ -322,10 +327,10 @@ static STRESSES_PROFILE: Table = Table {
 pub(super) static ANGLE_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of an angle",
     doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; of a \
-          solid the height is z",
+          3-D the height is z",
     keys: &[
         key("value", Quantity(In::Angle, Range::ANY), Required, "at the height at_y"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; of a solid z"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; in 3-D z"),
         key("per_metre", Gradient(In::Angle), Required, "growth per metre of depth"),
     ],
     exclusive: &[],

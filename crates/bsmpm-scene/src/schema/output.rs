@@ -105,15 +105,15 @@ pub(super) static HISTORY: Table = Table {
             "rectangle",
             loads::RECTANGLE,
             Optional,
-            "of section-forces, of a solid instead: a box whose corners are alike along one axis",
+            "of section-forces, in 3-D instead: a box whose corners are alike along one axis",
         ),
-        key("disc", Kind::Table(&loads::DISC), Optional, "of section-forces, of a solid instead: a disc"),
+        key("disc", Kind::Table(&loads::DISC), Optional, "of section-forces, in 3-D instead: a disc"),
         key(
             "fixed",
             Flag,
             Optional,
             "of section-forces: whether the section stays where it is in space; it goes with the material that is at its ends \
-             (of a solid at the ends of its middle lines) at the start unless given",
+             (in 3-D at the ends of its middle lines) at the start unless given",
         ),
         key(
             "surface",

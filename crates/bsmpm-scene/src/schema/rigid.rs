@@ -21,16 +21,17 @@ pub(super) static RIGID: Table = Table {
         key("name", Name, Required, "what histories call it"),
         key("polygon", body::POLYGON, Optional, "its corners at the start, in either direction"),
         key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead"),
-        key("box", Kind::Table(&body::BOX), Optional, "of a solid: a cuboid"),
-        key("sphere", Kind::Table(&body::SPHERE), Optional, "of a solid: a sphere"),
-        key("revolve", Kind::Table(&body::REVOLVE), Optional, "of a solid: a polygon about a vertical, e.g. a cone"),
-        key("terrain", Kind::Table(&GROUND), Optional, "of a solid: what lies under a raster of heights"),
+        key("box", Kind::Table(&body::BOX), Optional, "in 3-D: a cuboid"),
+        key("sphere", Kind::Table(&body::SPHERE), Optional, "in 3-D: a sphere"),
+        key("revolve", Kind::Table(&body::REVOLVE), Optional, "in 3-D: a polygon about a vertical, e.g. a cone"),
+        key("terrain", Kind::Table(&GROUND), Optional, "in 3-D: what lies under a raster of heights"),
         key(
-            "friction",
+            "friction_coefficient",
             Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
             Default("0.0"),
             "tangent of the angle of friction between it and the soil; [strength_reduction] divides it, too",
-        ),
+        )
+        .renamed_from(&["friction"]),
         key("displacement", loads::DISPLACEMENT, Optional, "reached at the end, linear in time"),
         key("velocity", loads::VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
         key(

@@ -21,17 +21,19 @@ pub(super) static STAGE: Table = Table {
              excess pressure; they are absent before",
         ),
         key(
-            "apply",
+            "activate",
             Names,
             Optional,
             "names of loads, supports, rigid bodies, drains and inflows that act from there on; they do nothing before",
-        ),
+        )
+        .renamed_from(&["apply"]),
         key(
-            "release",
+            "deactivate",
             Names,
             Optional,
             "names of loads, supports, rigid bodies, drains and inflows that act until there",
-        ),
+        )
+        .renamed_from(&["release"]),
         key("boundary", Kind::Table(&FACES), Optional, "what faces of the grid do from there on; the others go on"),
         key("materials", Tables(&EXCHANGE), Optional, "laws that bodies follow from there on"),
         key(
@@ -56,10 +58,10 @@ static FACES: Table = Table {
     keys: &[
         key("left", SUPPORT, Optional, "face at the lowest x"),
         key("right", SUPPORT, Optional, "face at the highest x"),
-        key("front", SUPPORT, Optional, "of a solid, face at the lowest y"),
-        key("back", SUPPORT, Optional, "of a solid, face at the highest y"),
-        key("bottom", SUPPORT, Optional, "face at the lowest y, of a solid z"),
-        key("top", SUPPORT, Optional, "face at the highest y, of a solid z"),
+        key("front", SUPPORT, Optional, "in 3-D, face at the lowest y"),
+        key("back", SUPPORT, Optional, "in 3-D, face at the highest y"),
+        key("bottom", SUPPORT, Optional, "face at the lowest y, in 3-D z"),
+        key("top", SUPPORT, Optional, "face at the highest y, in 3-D z"),
     ],
     exclusive: &[],
 };

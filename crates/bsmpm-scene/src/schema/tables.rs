@@ -27,7 +27,7 @@ pub static ROOT: Table = Table {
             "accuracy",
             Choice(Accuracy::WORDS),
             Optional,
-            "cells, points, steps, tolerances that are not given; not of a solid, which gives them",
+            "cells, points, steps, tolerances that are not given; not in 3-D, which gives them",
         ),
         key("analysis", Kind::Table(&ANALYSIS), Required, "kind of the analysis and its time"),
         key("grid", Kind::Table(&GRID), Required, "the parametric grid"),
@@ -61,7 +61,7 @@ pub static ROOT: Table = Table {
 static ANALYSIS: Table = Table {
     header: "[analysis]",
     doc: "Dynamic (Newmark 1/4, 1/2 unless damped), quasi-static (no inertia; time is a pseudo-time without unit), \
-          quasi-static-in-time (no inertia; in s, for strengths by the rate), or consolidation (no inertia; water flows in \
+          quasi-static-rate (no inertia; in s, for strengths by the rate), or consolidation (no inertia; water flows in \
           real time)",
     keys: &[
         key("type", Choice(AnalysisType::WORDS), Required, "whether inertia acts, and what time is"),
@@ -107,9 +107,10 @@ static ANALYSIS: Table = Table {
             "\"limit-load\" (quasi-static, under prescribed motion): chooses points, order, method, steps and tolerances that are \
              not given, and a raised stiffness, so that the geometry stays as drawn",
         ),
-        key("gamma", Quantity(In::Number, GAMMA), Optional, "Newmark's gamma instead: damping of first order"),
+        key("newmark_gamma", Quantity(In::Number, GAMMA), Optional, "Newmark's gamma instead: damping of first order")
+            .renamed_from(&["gamma"]),
     ],
-    exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "gamma"], false)],
+    exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "newmark_gamma"], false)],
 };
 
 const GROWTH: Range = Range::of(Included(1.0), Included(10.0));
@@ -123,7 +124,8 @@ static GRID: Table = Table {
         key("upper", Vector(In::Length, Range::ANY), Optional, "upper corner; a free face moves out to a whole cell"),
         key("cell", Either(In::Length, Range::POSITIVE), Optional, "edge of the cells, or one along each axis"),
         key("knots", Kind::Table(&KNOTS), Optional, "explicit breakpoints instead of cell"),
-        key("order", Choice(Order::WORDS), Default("\"quadratic\""), "order of the B-splines"),
+        key("degree", Choice(Order::WORDS), Default("\"quadratic\""), "order of the B-splines")
+            .renamed_from(&["order"]),
         key(
             "c0_lines",
             Choice(C0Lines::WORDS),
@@ -141,7 +143,7 @@ static KNOTS: Table = Table {
     keys: &[
         key("x", List(In::Length, Range::ANY), Required, "breakpoints along x"),
         key("y", List(In::Length, Range::ANY), Required, "breakpoints along y"),
-        key("z", List(In::Length, Range::ANY), Optional, "of a solid: breakpoints along z"),
+        key("z", List(In::Length, Range::ANY), Optional, "in 3-D: breakpoints along z"),
     ],
     exclusive: &[],
 };
@@ -175,10 +177,10 @@ static BOUNDARY: Table = Table {
     keys: &[
         key("left", loads::SUPPORT, Default("\"free\""), "face at the lowest x"),
         key("right", loads::SUPPORT, Default("\"free\""), "face at the highest x"),
-        key("bottom", loads::SUPPORT, Default("\"free\""), "face at the lowest y, of a solid z"),
-        key("top", loads::SUPPORT, Default("\"free\""), "face at the highest y, of a solid z"),
-        key("front", loads::SUPPORT, Optional, "of a solid: face at the lowest y; free unless given"),
-        key("back", loads::SUPPORT, Optional, "of a solid: face at the highest y; free unless given"),
+        key("bottom", loads::SUPPORT, Default("\"free\""), "face at the lowest y, in 3-D z"),
+        key("top", loads::SUPPORT, Default("\"free\""), "face at the highest y, in 3-D z"),
+        key("front", loads::SUPPORT, Optional, "in 3-D: face at the lowest y; free unless given"),
+        key("back", loads::SUPPORT, Optional, "in 3-D: face at the highest y; free unless given"),
     ],
     exclusive: &[],
 };

@@ -54,7 +54,7 @@ pub(super) static WATER: Table = Table {
             "drainage",
             Choice(Drainage::WORDS),
             Optional,
-            "what the pore water of materials without their own drainage does; given unless given",
+            "what the pore water of materials without their own drainage does; hydrostatic unless given",
         ),
     ],
     exclusive: &[one_of(&["level", "level_path", "line", "line_path"], false)],

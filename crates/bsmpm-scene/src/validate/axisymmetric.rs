@@ -27,7 +27,7 @@ fn cubic(case: &Case, report: &mut Report<'_>) {
     let meets_axis = |body: &Body| body.occupied(&case.grid)[0].start == 0;
     if case.grid.order == 3 && case.bodies.iter().any(meets_axis) {
         report.warn(
-            "grid.order: \"cubic\" in a body that meets the axis: a uniform stress is off there by 2.1, 1.9 and 1.4 % with 2, 3 \
+            "grid.degree: \"cubic\" in a body that meets the axis: a uniform stress is off there by 2.1, 1.9 and 1.4 % with 2, 3 \
              and 4 points along an axis of a cell and four cells in a radius, by 1.3, .9 and .6 % however small the cells \
              are; \"quadratic\" is off by .15, .07 and .03 %",
         );

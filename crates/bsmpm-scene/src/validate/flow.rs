@@ -404,7 +404,7 @@ fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Optio
         true => course(record, "rate_path", report),
         false => record.number("rate").map(|rate| Course(vec![(0.0, rate)])),
     };
-    let runs_off = record.flag("runs_off")?;
+    let runs_off = record.flag("runoff")?;
     let site = if record.gives("face") { along_face(record, ground, report)? } else { ground.site(record, report)? };
     Some(Inflow { site, rate: rate?, runs_off })
 }

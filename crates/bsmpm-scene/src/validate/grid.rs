@@ -16,7 +16,7 @@ const NAMES: [&str; 3] = ["x", "y", "z"];
 pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &mut Report<'_>) -> Option<GridSpec> {
     let grid = root.record("grid")?;
     // The rest is checked without it, too.
-    let order = grid.word("order").unwrap_or(Order::Quadratic).degree();
+    let order = grid.word("degree").unwrap_or(Order::Quadratic).degree();
     let dims = root.word::<Geometry>("geometry")?.dims();
     let (axes, lines) = if grid.gives("knots") {
         graded(grid, order, dims, report)?

@@ -108,7 +108,8 @@ fn read(
 /// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.
 fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut Report<'_>) -> Option<usize> {
     let wanted = record.text("of")?;
-    let footing = root.records("footing").iter().map(|strip| (strip, strip.text("name").unwrap_or(NAMELESS), "base"));
+    let footing =
+        root.records("footing").iter().map(|strip| (strip, strip.text("name").unwrap_or(NAMELESS), "interface"));
     let motions =
         root.records("prescribed").iter().map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
     let strips: Vec<_> = footing.chain(motions).collect();

@@ -208,7 +208,7 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
     }
     if case.grid.order != 2 {
         report.warn(
-            "grid.order: limit loads were verified with quadratic splines. With others neither the error nor the band of the \
+            "grid.degree: limit loads were verified with quadratic splines. With others neither the error nor the band of the \
              extrapolated load is known. Use \"quadratic\".",
         );
     }
@@ -228,7 +228,7 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
 /// rad  friction angle, if the law has one
 fn friction(material: &Material) -> f64 {
     let names = material.parameter_names().iter().map(|parameter| parameter.name);
-    names.zip(material.parameters()).find(|(name, _)| *name == "friction").map_or(0.0, |(_, angle)| angle)
+    names.zip(material.parameters()).find(|(name, _)| *name == "friction_angle").map_or(0.0, |(_, angle)| angle)
 }
 
 /// Warns of averaged volumetric strains in soil that dilates and has next to no cohesion under what is moved.

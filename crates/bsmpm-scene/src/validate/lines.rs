@@ -104,7 +104,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
 /// Soil whose strength friction makes, and in which no water flows although it fills it.
 fn undrained_with_friction<'a>(case: &Case, record: &'a Record) -> Option<&'a str> {
     let soils = &case.flow.as_ref()?.soils;
-    let rubs = |of: &Record| of.number("friction").is_some_and(|friction| friction > 0.0);
+    let rubs = |of: &Record| of.number("friction_angle").is_some_and(|friction| friction > 0.0);
     let is_made = |number: usize| case.bodies.iter().any(|body| body.material == number);
     let mut named = record.named("material").iter().zip(soils).enumerate();
     let undrained = |soil: &Option<Soil<3>>| soil.as_ref().is_some_and(|soil| soil.permeability.is_none());

@@ -63,7 +63,7 @@ pub(super) fn circle(
     report: &mut Report<'_>,
 ) -> Option<([f64; 2], f64, Vec<[f64; 2]>)> {
     let circle = record.record("circle")?;
-    let (center, radius) = (circle.pair("center")?, circle.number("radius")?);
+    let (center, radius) = (circle.pair("centre")?, circle.number("radius")?);
     let (lower, upper) = (around.grid?.lower(), around.grid?.upper());
     let inside = |at: &[f64; 2]| (0..2).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis]);
     let places: Vec<[f64; 2]> = ring(center, radius).filter(inside).collect();
@@ -381,7 +381,7 @@ fn is_of_k0(material: &Record) -> bool {
 
 /// K0 = (1 - sin φ) OCR^sin φ (Mayne and Kulhawy, 1982), below passive pressure.
 fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
-    let (ocr, friction) = (material.number("ocr")?, profile(material, "friction")?);
+    let (ocr, friction) = (material.number("ocr")?, profile(material, "friction_angle")?);
     if friction.per_metre != 0.0 {
         material.error("ocr", "the friction angle varies, and k0 with it: give k0, or layers of one angle", report);
         return None;

@@ -83,8 +83,8 @@ pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report
 
 /// Whether a rigid body or strip has friction, by what is written of it.
 fn has_friction(record: &Record) -> bool {
-    let given = |record: &Record| record.number("friction").is_some_and(|friction| friction > 0.0);
-    given(record) || record.record("components").or(record.record("base")).is_some_and(given)
+    let given = |record: &Record| record.number("friction_coefficient").is_some_and(|friction| friction > 0.0);
+    given(record) || record.record("components").or(record.record("interface")).is_some_and(given)
 }
 
 fn read(

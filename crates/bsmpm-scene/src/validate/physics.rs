@@ -88,7 +88,7 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
             let message = match (kind, is_of_clay) {
                 (AnalysisType::Consolidation, _) => "strength by the rate was not shown to be right where water flows",
                 (_, true) => {
-                    "the time of a quasi-static analysis is no time: a strength by the rate needs \"quasi-static-in-time\" or \
+                    "the time of a quasi-static analysis is no time: a strength by the rate needs \"quasi-static-rate\" or \
                      \"dynamic\""
                 }
                 (_, false) => "its strength by the rate was shown to be right in dynamics only: take \"dynamic\"",

@@ -85,7 +85,7 @@ fn warn_of_cubic_splines(case: &Case, report: &mut Report<'_>) {
     let has_side = (0..case.grid.dims() - 1).any(|axis| has_friction(case, axis));
     if case.grid.order > 2 && has_side {
         report.warn(
-            "ru: with cubic splines friction on sides of the grid is up to 6 % off. Use grid.order = \"quadratic\".",
+            "ru: with cubic splines friction on sides of the grid is up to 6 % off. Use grid.degree = \"quadratic\".",
         );
     }
 }

@@ -136,17 +136,17 @@ fn mass(record: &Record, volume: f64, sizes: &Sizes) -> Option<[f64; 2]> {
 }
 
 fn friction(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<f64> {
-    let given = record.number("friction")?;
+    let given = record.number("friction_coefficient")?;
     let friction = factor.map_or(given, |factor| given / factor);
     if friction != given {
         let reason = format!("strength_reduction.factor = {}", factor.unwrap_or(1.0));
-        report.note(record.path_of("friction"), format!("{friction}"), reason);
+        report.note(record.path_of("friction_coefficient"), format!("{friction}"), reason);
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
             "{}: {friction}: shown to be right up to {MOST_SHOWN_FRICTION}; with more, steps may find no state that agrees \
              with Coulomb's law, or one of several",
-            record.path_of("friction")
+            record.path_of("friction_coefficient")
         ));
     }
     Some(friction)

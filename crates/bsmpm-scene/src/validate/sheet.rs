@@ -27,7 +27,7 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
     let spacing = grid.shortest() / bodies.iter().map(|body| body.points_per_cell).max()? as f64;
     let (key, found) = if record.gives("sphere") {
         let sphere = record.record("sphere")?;
-        let (center, radius) = (sphere.vector("center")?, sphere.number("radius")?);
+        let (center, radius) = (sphere.vector("centre")?, sphere.number("radius")?);
         let part = |_| sphere_of(center, radius, spacing).into_iter().flat_map(|of| inside(grid, of)).collect();
         ("sphere", countable(2.0 * TAU * radius * radius, spacing).map(part))
     } else {

@@ -88,7 +88,7 @@ pub(crate) fn normal_of(site: Site) -> [f64; 3] {
 /// A plate inside the grid; of a disc a part of it.
 pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<Plate> {
     if let Some(disc) = record.record("disc") {
-        let (center, radius) = (disc.vector("center")?, disc.number("radius")?);
+        let (center, radius) = (disc.vector("centre")?, disc.number("radius")?);
         let normal = disc.word::<Axis>("normal")? as usize;
         let corner = |side: f64| std::array::from_fn(|k| center[k] + if k == normal { 0.0 } else { side * radius });
         let plate = Plate { lower: corner(-1.0), upper: corner(1.0), round: true };

@@ -27,7 +27,7 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     }
     for drain in root.records("drain").iter().chain(root.records("inflow")) {
         for key in ["from", "to", "circle", "surface"].into_iter().filter(|key| drain.gives(key)) {
-            let message = "not available in a solid: name a face of the grid, a rectangle = { lower, upper } or a disc";
+            let message = "not available in 3-D: name a face of the grid, a rectangle = { lower, upper } or a disc";
             drain.error(key, message, report);
         }
     }
@@ -47,10 +47,10 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     }
     for history in root.records("history") {
         if let Some(quantity) = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of)) {
-            history.error("quantity", format!("\"{quantity}\" is not available in a solid yet: use frames"), report);
+            history.error("quantity", format!("\"{quantity}\" is not available in 3-D yet: use frames"), report);
         }
         if history.gives("at_x") {
-            history.error("at_x", "not available in a solid yet: leave it out", report);
+            history.error("at_x", "not available in 3-D yet: leave it out", report);
         }
     }
 }
@@ -61,24 +61,24 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
     let strips = strips.chain(root.records("drain")).chain(root.records("inflow"));
     for flat in root.records("traction").iter().chain(strips) {
         for key in ["rectangle", "disc"].into_iter().filter(|key| flat.gives(key)) {
-            flat.error(key, "is in space: geometry = \"solid\" has it; here from and to", report);
+            flat.error(key, "is in space: geometry = \"3d\" has it; here from and to", report);
         }
     }
     for traction in root.records("traction") {
         for key in ["sphere", "surface"].into_iter().filter(|key| traction.gives(key)) {
-            traction.error(key, "is in space: geometry = \"solid\" has it; here from and to, or circle", report);
+            traction.error(key, "is in space: geometry = \"3d\" has it; here from and to, or circle", report);
         }
     }
     let stages = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));
     for boundary in root.record("boundary").into_iter().chain(stages) {
         for side in [Side::Front, Side::Back].into_iter().filter(|side| boundary.gives(side.word())) {
-            boundary.error(side.word(), "a plane has no such face: geometry = \"solid\" has", report);
+            boundary.error(side.word(), "a plane has no such face: geometry = \"3d\" has", report);
         }
     }
     let shapes = root.records("body").iter().flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
     for shape in shapes.chain(root.records("rigid")) {
         for key in ["extrude", "sphere", "revolve", "terrain", "surface"].into_iter().filter(|key| shape.gives(key)) {
-            shape.error(key, "is a shape in space: geometry = \"solid\" has it", report);
+            shape.error(key, "is a shape in space: geometry = \"3d\" has it", report);
         }
     }
 }
@@ -89,14 +89,15 @@ fn faces(all: &[FaceSupport], boundary: &Record, report: &mut Report<'_>) {
     for of in all.iter().filter(|of| boundary.gives(side(of).word())) {
         if !matches!(of.support, Support::Fixed | Support::Roller | Support::Free | Support::Contact | Support::Outflow)
         {
-            let message = "not available in a solid yet: \"fixed\", \"roller\", \"free\", \"outflow\", \"contact\" or { friction }";
+            let message =
+                "not available in 3-D yet: \"fixed\", \"roller\", \"free\", \"outflow\", \"contact\" or { friction }";
             boundary.error(side(of).word(), message, report);
         }
     }
     let rubbing = || all.iter().filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0));
     let meets = |of: &&FaceSupport| rubbing().any(|other| other.face.axis != of.face.axis);
     if let Some(of) = rubbing().filter(|of| boundary.gives(side(of).word())).rfind(meets) {
-        let message = "friction on two faces that share an edge is not available in a solid yet: one of them may rub, and \
+        let message = "friction on two faces that share an edge is not available in 3-D yet: one of them may rub, and \
                        the other be \"contact\" or \"roller\"";
         boundary.error(side(of).word(), message, report);
     }
@@ -116,7 +117,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     if matches!(case.stabilisation, Stabilisation::SubgridFBar | Stabilisation::ModifiedFBar) {
         let key = root.record("stabilisation");
         key.into_iter().for_each(|of| {
-            of.error("method", "not shown to be right in a solid yet: \"consistent-f-bar\" or \"f-bar\"", report);
+            of.error("method", "not shown to be right in 3-D yet: \"consistent-f-bar\" or \"f-bar\"", report);
         });
     }
 }

@@ -100,7 +100,7 @@ fn extended_splines(
         }
         (Regime::QuasiStatic, 3) => {
             "\"linear\" is for linear and quadratic splines. The edge of cubic ones creeps with it as without it, in \
-             five times the iterations. Use \"off\", or grid.order = \"quadratic\"."
+             five times the iterations. Use \"off\", or grid.degree = \"quadratic\"."
         }
         (Regime::QuasiStatic, _) => {
             let extended = given.unwrap_or(ExtendedSplines::Linear);

@@ -81,7 +81,7 @@ fn stage(
 ) -> Option<Stage> {
     let bodies: Vec<_> = bodies.iter().zip(0..).filter_map(|(body, k)| Some((body.name.as_deref()?, k))).collect();
     let (remove, add) = (named("remove", record, &bodies, report), named("add", record, &bodies, report));
-    let (apply, release) = (named("apply", record, acting, report), named("release", record, acting, report));
+    let (apply, release) = (named("activate", record, acting, report), named("deactivate", record, acting, report));
     let (materials, faces) = (exchanges(record, root, report), faces((record, factor), root, report));
     let (at, resets_displacements) = (record.number("at")?, record.flag("reset_displacements")?);
     let of_bodies = |named: Vec<(String, usize)>| named.into_iter().map(|(_, body)| body).collect::<Vec<_>>();
@@ -201,9 +201,9 @@ fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &m
     for (stage, record) in stages.iter().zip(root.records("stage")) {
         let [releases, applies] = stage.switches(*what);
         if releases && applies {
-            record.error("apply", format!("{name} is released by this stage, too"), report);
+            record.error("activate", format!("{name} is released by this stage, too"), report);
         } else if (releases && acts == Some(false)) || (applies && acts == Some(true)) {
-            let (key, told) = if releases { ("release", "does not act") } else { ("apply", "acts already") };
+            let (key, told) = if releases { ("deactivate", "does not act") } else { ("activate", "acts already") };
             record.error(key, format!("{name} {told}, by a stage before"), report);
         }
         acts = if releases || applies { Some(applies) } else { acts };
@@ -269,7 +269,7 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
                     "{name} has moved before it acts, and would hold what lies at its place then: let its path begin at {}",
                     stage.at
                 );
-                record.error("apply", message, report);
+                record.error("activate", message, report);
             }
         }
         for (&(from, to), pair) in stage.materials.iter().zip(record.records("materials")) {
@@ -353,7 +353,7 @@ fn beside_absorbing(case: &Case, stage: &Stage, record: &Record, report: &mut Re
         );
     }
     if stage.release.iter().any(|(_, what)| !matches!(what, Acting::Load(_))) {
-        refuse("release", "with strips that was not shown to be right; fix those faces");
+        refuse("deactivate", "with strips that was not shown to be right; fix those faces");
     }
     for of in faces.iter().filter(|of| of.support == Support::FreeField) {
         let (lower, higher) = free_field::column(case, of.face.upper);

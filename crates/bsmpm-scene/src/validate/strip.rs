@@ -22,9 +22,9 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
     let site = site(record, around, report);
     let (path, site) = (path?, site?);
     stays_inside(record, site, &path, around, report);
-    let (base, contact) = match rubs((root, record), "base", site, around, report) {
+    let (base, contact) = match rubs((root, record), "interface", site, around, report) {
         Some(rubs) => rubs?,
-        None => (record.word("base")?, None),
+        None => (record.word("interface")?, None),
     };
     if base == Base::Smooth && contact.is_none() && normal_part(&path, site) <= NOTHING * path.farthest() {
         let message = "a smooth base holds its normal component only, and the motion has none";

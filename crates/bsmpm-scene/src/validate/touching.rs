@@ -12,9 +12,9 @@ use bsmpm::tensor::Vector;
 
 /// Places on a path between two of its rows at which an overlap is looked for.
 const PLACES: usize = 32;
-/// Cells across the smaller of two faces that meet in one plane and move differently below which their forces are off by
-/// 10 % and more: the factor of a trapdoor of two rigid bodies is 2.24, 2.13, 2.08 and 1.99 on 8, 12, 16 and 32 cells,
-/// where 1.95 to 2 is right.
+/// Cells across the smaller of two faces that meet in one plane and move differently, below which their forces are off
+/// by 10 % and more: the factor of a trapdoor of two rigid bodies is 2.24, 2.13, 2.08 and 1.99 on 8, 12, 16 and 32
+/// cells, where 1.95 to 2 is right.
 const FEWEST_CELLS: f64 = 10.0;
 /// Parts of a cell off a surface at which soil and the other body are looked for.
 const BESIDE: f64 = 0.1;

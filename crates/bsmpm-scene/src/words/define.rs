@@ -1,17 +1,19 @@
 //! How words are defined: for an enum of another crate, or together with the enum.
 
 /// The words of an enum: `Variant = "word": "what it means",` those that are not available `later`, and `misnomers`
-/// with what is meant by them.
+/// with what is meant by them, and `earlier` words with those of now.
 macro_rules! words {
     ($type:ident {
         $($variant:ident = $word:literal: $doc:expr,)+
-    } $(later [$($later:literal),+])? $(misnomers [$($misnomer:literal: $meant:literal),+])?) => {
+    } $(later [$($later:literal),+])? $(misnomers [$($misnomer:literal: $meant:literal),+])?
+    $(earlier [$($earlier:literal: $now:literal),+])?) => {
         impl $crate::words::Word for $type {
             const WORDS: $crate::words::Words = $crate::words::Words {
                 auto: None,
                 words: &[$(($word, $doc)),+],
                 later: &[$($($later),+)?],
                 misnomers: &[$($(($misnomer, $meant)),+)?],
+                earlier: &[$($(($earlier, $now)),+)?],
                 removed: &[],
             };
 
@@ -35,7 +37,8 @@ macro_rules! words {
 macro_rules! choice {
     ($(#[$about:meta])+ pub enum $type:ident {
         $($(#[doc = $doc:literal])+ $variant:ident = $word:literal,)+
-    } $(later [$($later:literal),+])? $(misnomers [$($misnomer:literal: $meant:literal),+])?) => {
+    } $(later [$($later:literal),+])? $(misnomers [$($misnomer:literal: $meant:literal),+])?
+    $(earlier [$($earlier:literal: $now:literal),+])?) => {
         $(#[$about])+
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum $type {
@@ -44,7 +47,7 @@ macro_rules! choice {
 
         words! { $type {
             $($variant = $word: concat!($($doc),+),)+
-        } $(later [$($later),+])? $(misnomers [$($misnomer: $meant),+])? }
+        } $(later [$($later),+])? $(misnomers [$($misnomer: $meant),+])? $(earlier [$($earlier: $now),+])? }
 
         impl std::fmt::Display for $type {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

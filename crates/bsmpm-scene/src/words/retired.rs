@@ -8,6 +8,7 @@ pub(crate) const BACKGROUND_KIND: Words = Words {
     words: &[("strain", "resists strain"), ("laplacian", "earlier name of strain")],
     later: &[],
     misnomers: &[],
+    earlier: &[],
     removed: &[replaced_by_extension("ghost-penalty"), replaced_by_extension("curvature")],
 };
 
@@ -17,6 +18,7 @@ pub(crate) const BACKGROUND_CELLS: Words = Words {
     words: &[("occupied", "all cells that hold points")],
     later: &[],
     misnomers: &[],
+    earlier: &[],
     removed: &[replaced_by_extension("partly-filled")],
 };
 

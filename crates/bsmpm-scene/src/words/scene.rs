@@ -12,8 +12,8 @@ choice! {
         /// direction around it; forces, masses and energies in histories are of the whole circle.
         Axisymmetric = "axisymmetric",
         /// Three dimensions: z is the vertical.
-        Solid = "solid",
-    }
+        Solid = "3d",
+    } earlier ["solid": "3d"]
 }
 
 impl Geometry {
@@ -74,10 +74,10 @@ choice! {
         /// No inertia; time is a pseudo-time.
         QuasiStatic = "quasi-static",
         /// No inertia; in real time, which a strength by the rate needs.
-        InTime = "quasi-static-in-time",
+        InTime = "quasi-static-rate",
         /// No inertia; water flows in real time.
         Consolidation = "consolidation",
-    }
+    } earlier ["quasi-static-in-time": "quasi-static-rate"]
 }
 
 impl AnalysisType {
@@ -99,14 +99,14 @@ choice! {
     /// What a soil's pore water does.
     pub enum Drainage {
         /// Its pressure is that of the still water.
-        Given = "given",
+        Given = "hydrostatic",
         /// It flows, and its excess pressure is an unknown.
         Coupled = "coupled",
         /// It stays where it is, and its excess pressure is an unknown.
         Undrained = "undrained",
     } misnomers [
-        "drained": "soil that drains in time is \"coupled\", with a permeability; soil without excess pressure is \"given\""
-    ]
+        "drained": "soil that drains in time is \"coupled\", with a permeability; soil without excess pressure is \"hydrostatic\""
+    ] earlier ["given": "hydrostatic"]
 }
 
 choice! {

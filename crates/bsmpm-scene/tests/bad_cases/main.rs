@@ -96,8 +96,8 @@ fn rules_between_keys() {
 
 #[test]
 fn what_two_groups_of_keys_forbid_is_told_once() {
-    let sphere = "sphere = { center = [3, 1.5, 2.0]";
-    let text = SOLID.replacen(sphere, &format!("disc = {{ center = [0.4, 1.5, 1.0], radius = 0.3 }}\n{sphere}"), 1);
+    let sphere = "sphere = { centre = [3, 1.5, 2.0]";
+    let text = SOLID.replacen(sphere, &format!("disc = {{ centre = [0.4, 1.5, 1.0], radius = 0.3 }}\n{sphere}"), 1);
     let errors = Case::from_text("case.toml", &text, &[]).expect_err("a disc and a sphere");
     let told = errors.iter().filter(|error| error.message.contains("is given too")).count();
     assert_eq!(told, 1, "{errors:?}");

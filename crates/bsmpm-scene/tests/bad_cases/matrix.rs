@@ -87,15 +87,25 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I10",
         refused: &[
-            row("\"30 deg\"", "-1", "material.sand.friction", "-1 is out of range; allowed: 0 <= friction < 90"),
-            row("\"30 deg\"", "90", "material.sand.friction", "90 is out of range; allowed: 0 <= friction < 90"),
             row(
-                "dilation = 5",
-                "dilation = 30.1",
-                "material.sand.dilation",
-                "30.1 is out of range; allowed: 0 <= dilation <= friction = 30",
+                "\"30 deg\"",
+                "-1",
+                "material.sand.friction_angle",
+                "-1 is out of range; allowed: 0 <= friction_angle < 90",
             ),
-            row("dilation = 5", "dilation = -1", "material.sand.dilation", "-1 is out of range"),
+            row(
+                "\"30 deg\"",
+                "90",
+                "material.sand.friction_angle",
+                "90 is out of range; allowed: 0 <= friction_angle < 90",
+            ),
+            row(
+                "dilation_angle = 5",
+                "dilation_angle = 30.1",
+                "material.sand.dilation_angle",
+                "30.1 is out of range; allowed: 0 <= dilation_angle <= friction_angle = 30",
+            ),
+            row("dilation_angle = 5", "dilation_angle = -1", "material.sand.dilation_angle", "-1 is out of range"),
             row("\"1 kPa\"", "\"-1 kPa\"", "material.sand.cohesion", "allowed: cohesion >= 0"),
         ],
         taken: &[
@@ -133,8 +143,8 @@ const MATRIX: &[Input] = &[
                 "3.5 is outside the grid, which ends at y = 3",
             ),
             row(
-                "center = [0.5, 2.0]",
-                "center = [0.3, 2.0]",
+                "centre = [0.5, 2.0]",
+                "centre = [0.3, 2.0]",
                 "body.4.circle",
                 "is outside the grid, which starts at x = 0",
             ),
@@ -264,7 +274,7 @@ const MATRIX: &[Input] = &[
                 "shaking.acceleration: the row at t = 3 is beyond the end",
             ),
             ("[\"1 s\", \"-0.1 g\"", "[\"2 ms\", \"-0.1 g\"", "rows are 0.002 apart and steps 0.01"),
-            ("bottom = \"fixed\"", "bottom = { friction = 1.5 }", "shown to be right up to 1"),
+            ("bottom = \"fixed\"", "bottom = { friction_coefficient = 1.5 }", "shown to be right up to 1"),
             ("bottom = \"fixed\"", "bottom = \"contact\"", "thrown back with energy that it did not have"),
             ("ramp = \"0.5 s\"", "amplitude = [[2, 1]]", "traction.0.amplitude: the row at t = 2 is beyond the end"),
             ("ramp = \"0.5 s\"", "amplitude = [[0, 1]]", "traction.0: acts in full from time 0"),

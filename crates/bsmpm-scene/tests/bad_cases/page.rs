@@ -32,7 +32,7 @@ const WRONG: &[Wrong] = &[
         "clay that is stronger once it is remoulded",
         &[("\"tresca\"", "\"sensitive-clay\""), (CLAY, "cohesion = 2e4\nsensitivity = 0.5\nsoftening_strain = 20\n")],
     ),
-    dynamic("Cam-clay without its swelling", &[("\"tresca\"", "\"modified-cam-clay\""), (CLAY, "lambda = 0.1\n")]),
+    dynamic("Cam-clay without its swelling", &[("\"tresca\"", "\"modified-cam-clay\""), (CLAY, "lambda_star = 0.1\n")]),
     dynamic(
         "a granular law that flows fastest with less friction",
         &[
@@ -47,10 +47,10 @@ const WRONG: &[Wrong] = &[
         "damping where nothing vibrates",
         &[("poisson = 0.3", "poisson = 0.3\ndamping = { ratio = 0.05, frequency = 2.0 }")],
     ),
-    dynamic("friction as an angle", &[("bottom = \"fixed\"", "bottom = { friction = \"20 deg\" }")]),
+    dynamic("friction as an angle", &[("bottom = \"fixed\"", "bottom = { friction_coefficient = \"20 deg\" }")]),
     dynamic(
         "a face that rubs and is fixed",
-        &[("bottom = \"fixed\"", "bottom = { friction = 0.3, type = \"fixed\" }")],
+        &[("bottom = \"fixed\"", "bottom = { friction_coefficient = 0.3, type = \"fixed\" }")],
     ),
     at_rest("a body that only friction would hold", &[("bottom = \"fixed\"", "bottom = \"contact\"")]),
     dynamic(
@@ -106,7 +106,7 @@ const WRONG: &[Wrong] = &[
     dynamic("a rigid body within the soil", &[("[1.9, 1.35], [2.45, \"135 cm\"]", "[1.9, 1.0], [2.45, 1.0]")]),
     dynamic("a rigid body that flies without mass", &[("density = \"0.5 t/m3\"\n", "")]),
     dynamic("the force on a rigid body that there is none of", &[("rigid    = \"pipe\"", "rigid = \"pip\"")]),
-    dynamic("friction by a word", &[("base = \"smooth\"", "base = { friction = \"smooth\" }")]),
+    dynamic("friction by a word", &[("interface = \"smooth\"", "interface = { friction_coefficient = \"smooth\" }")]),
     dynamic("the work of a strip without a name", &[("quantity = \"heave\"", "quantity = \"work\"\nof = \"strip\"")]),
     dynamic("a cut through nothing", &[("from     = [1.0, 0.0]", "from = [1.0, 1.25]")]),
     dynamic("a profile of a field that is none", &[("\"plastic-strain\"]", "\"plastic strain\"]")]),
@@ -150,7 +150,7 @@ const WRONG: &[Wrong] = &[
     wet("the outflow of a drain that there is none of", &[("drain    = \"base\"", "drain    = \"bas\"")]),
     wet("water in linear cells", &[("\"quadratic\"", "\"linear\"")]),
     wet("water and Broyden's update", &[("\"auto\"", "\"broyden\"")]),
-    wet("water beside a face that rubs", &[("right  = \"roller\"", "right  = { friction = 0.3 }")]),
+    wet("water beside a face that rubs", &[("right  = \"roller\"", "right  = { friction_coefficient = 0.3 }")]),
 ];
 
 /// The page: of every wrong case what was changed, and what the program says.

@@ -10,7 +10,7 @@ const PLATE: &str = "rectangle    = { lower = [0.5, 2.0, 1.0], upper = [1.5, 3.0
 
 const SECTION: &str = "rectangle = { lower = [0.0, 0.0, 0.5], upper = [1.5, 3.0, 0.5] }";
 
-const BALL: &str = "sphere = { center = [3.5, 0.5, 2.0], radius = 0.25 }";
+const BALL: &str = "sphere = { centre = [3.5, 0.5, 2.0], radius = 0.25 }";
 
 const FORCE: &str = "force = [\"1 N\", 0.0, 0.0]";
 
@@ -28,9 +28,9 @@ pub const WET: &[Row] = &[
         "drain.0.rectangle",
         "no rectangle",
     ),
-    row("disc     = { center = [1.0", "disc = { center = [3.5", "drain.1.disc", "no body is at"),
+    row("disc     = { centre = [1.0", "disc = { centre = [3.5", "drain.1.disc", "no body is at"),
     row("upper = [1.0, 3.0, 1.5] }\nrate", "upper = [3.0, 3.0, 1.5] }\nrate", "inflow.0.rectangle", "no body is at"),
-    row("disc = { center = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "a disc"),
+    row("disc = { centre = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "a disc"),
     row(
         "rectangle = { lower = [2.0, 0.0, 0.0], upper = [2.0, 3.0, 1.5] }",
         "surface = true",
@@ -40,11 +40,11 @@ pub const WET: &[Row] = &[
 ];
 
 pub const SOLID: &[Row] = &[
-    row("lower = [0.0, 0.0, 0.0]", "lower = [0.0, 0.0]", "grid.lower", "solid: of three"),
-    row("cell  = [0.5, 1.0, 0.5]", "cell  = [0.5, 1.0]", "grid.cell", "solid: of three"),
+    row("lower = [0.0, 0.0, 0.0]", "lower = [0.0, 0.0]", "grid.lower", "three in 3-D"),
+    row("cell  = [0.5, 1.0, 0.5]", "cell  = [0.5, 1.0]", "grid.cell", "three in 3-D"),
     row("upper = [4.0, 3.0, 3.0]", "upper = [4.0, 3.0, -1.0]", "grid.upper", "along z is not above"),
-    row("velocity = [0.0, 0.0, -1.0]", "velocity = [0.0, -1.0]", "body.0.velocity", "solid: of three"),
-    row("[0.0, 0.0, -9.81]", "[0.0, -9.81]", "gravity.acceleration", "solid: of three"),
+    row("velocity = [0.0, 0.0, -1.0]", "velocity = [0.0, -1.0]", "body.0.velocity", "three in 3-D"),
+    row("[0.0, 0.0, -9.81]", "[0.0, -9.81]", "gravity.acceleration", "three in 3-D"),
     row(BOX, "box = { lower = [0.0, 0.0, 1.0], upper = [2.0, 3.0, 1.0] }", "body.0.box.upper", "is not above lower"),
     row(BOX, "box = { lower = [0.0, 0.0, 0.0], upper = [2.0, 3.0, 4.0] }", "body.0.box", "ends at z = 3"),
     row(BOX, "polygon = [[0, 0], [1, 0], [0, 1]]", "body.0.polygon", "give it a length, extrude"),
@@ -55,7 +55,7 @@ pub const SOLID: &[Row] = &[
     row("[[0.0, 1.0]", "[[-0.5, 1.0]", "body.3.revolve.polygon", "radius >= 0"),
     row(
         "revolve = { polygon = [[0.0, 1.0], [0.8, 1.0], [0.0, 2.0]], about = [1.0, 1.5] }\n\
-         subtract = [{ revolve = { circle = { center = [0.4, 1.2], radius = 0.1 }, about = [1.0, 1.5] } }]\n",
+         subtract = [{ revolve = { circle = { centre = [0.4, 1.2], radius = 0.1 }, about = [1.0, 1.5] } }]\n",
         "revolve = { polygon = [[0.8, 1], [0.800000001, 1], [0.800000001, 2], [0.8, 2]], about = [1.0, 1.5] }\n",
         "body.3.revolve",
         "between the lines",
@@ -76,18 +76,18 @@ pub const SOLID: &[Row] = &[
         "reach from [2500.000, 1500.000, 2000.000] to [3500.000, 2500.000, 3000.000] m: numbers are metres times scale",
     )
     .up(1),
-    row("left   = \"roller\"", "left   = \"absorbing\"", "boundary.left", "not available in a solid yet"),
+    row("left   = \"roller\"", "left   = \"absorbing\"", "boundary.left", "not available in 3-D yet"),
     row(
         "back   = \"roller\"\nbottom = \"fixed\"",
-        "back   = { friction = 0.3 }\nbottom = { friction = 0.3 }",
+        "back   = { friction_coefficient = 0.3 }\nbottom = { friction_coefficient = 0.3 }",
         "boundary.bottom",
         "share an edge",
     )
     .down(1),
-    row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "not shown to be right in a solid"),
-    row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5]", "history.0.at", "solid: of three"),
+    row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "not shown to be right in 3-D"),
+    row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5]", "history.0.at", "three in 3-D"),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 3.5, 1.0]", "history.0.at", "is outside the grid"),
-    row("lower = [0.0, 0.5, 0.0]", "lower = [0.0, 0.5]", "history.6.box.lower", "solid: of three"),
+    row("lower = [0.0, 0.5, 0.0]", "lower = [0.0, 0.5]", "history.6.box.lower", "three in 3-D"),
     row("lower = [0.0, 0.5, 0.0]", "lower = [0.0, 1.5, 0.0]", "history.6.box.upper", "the box is empty"),
     row(
         "lower = [0.0, 0.5, 0.0], upper = [2.0",
@@ -95,7 +95,7 @@ pub const SOLID: &[Row] = &[
         "history.6.box",
         "outside the grid",
     ),
-    row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5]", "profile.0.from", "solid: of three"),
+    row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5]", "profile.0.from", "three in 3-D"),
     row(
         "rectangle = { lower = [0.0, 0.0, 0.5]",
         "# { lower = [0.0, 0.0, 0.5]",
@@ -107,13 +107,13 @@ pub const SOLID: &[Row] = &[
     row(SECTION, "rectangle = { lower = [0, 0, 0.5], upper = [1, 3, 0.6] }", "history.4.rectangle", "no rectangle"),
     row(SECTION, "rectangle = { lower = [0, 0, 0.5], upper = [1, 4, 0.5] }", "history.4.rectangle", "ends at y = 3"),
     row(
-        "disc     = { center = [3.0",
-        "rectangle = { lower = [0, 0, 0], upper = [1, 1, 0] }\ndisc = { center = [3.0",
+        "disc     = { centre = [3.0",
+        "rectangle = { lower = [0, 0, 0], upper = [1, 1, 0] }\ndisc = { centre = [3.0",
         "history.5.disc",
         "rectangle",
     )
     .down(1),
-    row("disc     = { center = [3.0", "disc = { center = [9.0", "history.5.disc", "no part of it"),
+    row("disc     = { centre = [3.0", "disc = { centre = [9.0", "history.5.disc", "no part of it"),
     row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5, 3.5]", "profile.0.from", "which ends at z = 3"),
     row("from  = [1.0, 1.5, 1.0]", "from  = [1.0, 1.5, 0.0]", "profile.0.to", "[1.0, 1.5, 0.0] is where").down(1),
     row("at = [1.0, 1.5, 1.0]", "at = [1.0, 1.5, 1.0]\nat_x = 1.0", "history.0.at_x", "has no meaning").down(1),
@@ -121,24 +121,24 @@ pub const SOLID: &[Row] = &[
         "quantity = \"reaction\"\nface = \"back\"",
         "quantity = \"front\"",
         "history.1.quantity",
-        "not available in a solid",
+        "not available in 3-D",
     ),
     row("[0.5, 0.0, 1.0, 0.0]", "[0.5, 0.0, 1.0]", "shaking.acceleration", "found a list of 3"),
     row(
         "[gravity]",
-        "[[rigid]]\nname = \"a\"\ncircle = { center = [3, 2], radius = 0.5 }\n[gravity]",
+        "[[rigid]]\nname = \"a\"\ncircle = { centre = [3, 2], radius = 0.5 }\n[gravity]",
         "rigid.3.circle",
         "is of a plane",
     )
     .down(2),
-    row(BALL, "sphere = { center = [1.0, 1.5, 0.6], radius = 0.4 }", "rigid.0.sphere", "is in it at"),
-    row(BALL, "sphere = { center = [1.0, 1.5, 0.6], radius = 0.05 }", "rigid.0.sphere", "is in it at"),
-    row(BALL, "sphere = { center = [1.0, 1.5], radius = 0.4 }", "rigid.0.sphere.center", "solid: of three"),
+    row(BALL, "sphere = { centre = [1.0, 1.5, 0.6], radius = 0.4 }", "rigid.0.sphere", "is in it at"),
+    row(BALL, "sphere = { centre = [1.0, 1.5, 0.6], radius = 0.05 }", "rigid.0.sphere", "is in it at"),
+    row(BALL, "sphere = { centre = [1.0, 1.5], radius = 0.4 }", "rigid.0.sphere.centre", "three in 3-D"),
     row(BALL, "box = { lower = [0, 0, 3], upper = [1, 1, 3] }", "rigid.0.box.upper", "the body is empty"),
     row(BALL, "terrain = { top = [[0, 0, 1], [1, 0, 1]] }", "rigid.0.terrain.top", "two posts along x"),
     row(
         BALL,
-        "revolve = { circle = { center = [1, 1], radius = 0.5 }, about = [0, 0] }",
+        "revolve = { circle = { centre = [1, 1], radius = 0.5 }, about = [0, 0] }",
         "rigid.0.revolve.circle",
         "give a polygon",
     ),
@@ -148,12 +148,17 @@ pub const SOLID: &[Row] = &[
         "rigid.0.revolve.polygon",
         "radius >= 0",
     ),
-    row("release  = [\"plate\"]", "remove = [\"block\"]", "footing.rectangle", "no one body from the start to the end")
-        .up(37),
+    row(
+        "deactivate  = [\"plate\"]",
+        "remove = [\"block\"]",
+        "footing.rectangle",
+        "no one body from the start to the end",
+    )
+    .up(37),
     row("back = \"contact\" }", "back = \"absorbing\" }", "stage.0.boundary.back", "sides: from the start on"),
     row(
         "front = \"roller\"",
-        "front = { friction = 1 }, bottom = { friction = 1 }",
+        "front = { friction_coefficient = 1 }, bottom = { friction_coefficient = 1 }",
         "stage.0.boundary.bottom",
         "an edge",
     ),
@@ -168,9 +173,9 @@ pub const SOLID: &[Row] = &[
         .down(1),
     row("density = 2000", FLOWS, "drain.0.surface", "name a face of the grid").down(7),
     row("density = 2000", PERMEABLE, "material.soil.permeability", "expected").down(3),
-    row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "solid: of three"),
+    row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "three in 3-D"),
     row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 1.9]", "point_load.0.at", "no body is at [3.9, 0.1, 1.9]"),
-    row(FORCE, "force = \"-10 N\"", "point_load.0.force", "\"-10 N\": in a solid it has three components"),
+    row(FORCE, "force = \"-10 N\"", "point_load.0.force", "\"-10 N\": in 3-D it has three components"),
     row(FORCE, "force = [0.0, \"-10 N/m\"]", "point_load.0.force", "three components, [x, y, z], in N"),
     row(FORCE, "force = [0.0, 0.0, \"-10 kPa\"]", "point_load.0.force", "expected a force (N, kN, MN)"),
     row(PLATE, "from = [0, 1]\nto = [1, 1]", "footing.from", "a solid has plates"),
@@ -182,9 +187,9 @@ pub const SOLID: &[Row] = &[
         "inside a cell of 0.5 m",
     ),
     row(PLATE, "rectangle = { lower = [0.5, 2, 2.8], upper = [1.5, 3, 2.8] }", "footing.rectangle", "no body is at"),
-    row(PLATE, "disc = { center = [1.0, 2.5, 1.0], radius = 0 }", "footing.disc.radius", "radius > 0"),
-    row(PLATE, "disc = { center = [9.0, 2.5, 1.0], radius = 0.5 }", "footing.disc", "no part of it"),
-    row("displacement = [0.0, 0.0, -0.01]", "displacement = [0.0, -0.01]", "footing.displacement", "solid: of three"),
+    row(PLATE, "disc = { centre = [1.0, 2.5, 1.0], radius = 0 }", "footing.disc.radius", "radius > 0"),
+    row(PLATE, "disc = { centre = [9.0, 2.5, 1.0], radius = 0.5 }", "footing.disc", "no part of it"),
+    row("displacement = [0.0, 0.0, -0.01]", "displacement = [0.0, -0.01]", "footing.displacement", "three in 3-D"),
     row(
         "displacement = [0.0, 0.0, -0.01]",
         "displacement = [0.1, 0.0, 0.0]",
@@ -192,9 +197,9 @@ pub const SOLID: &[Row] = &[
         "normal component",
     ),
     row("displacement = [0.0, 0.0, -0.01]", "displacement = [0, 0, -1.5]", "footing.displacement", "left the grid"),
-    row("[0.5, 0.0, 0.0, -0.01]", "[0.5, 0.0, -0.01]", "prescribed.0.path", "(solid: of three)"),
+    row("[0.5, 0.0, 0.0, -0.01]", "[0.5, 0.0, -0.01]", "prescribed.0.path", "(three in 3-D)"),
     row("normal = \"z\"", "normal = \"up\"", "prescribed.0.disc.normal", "expected one of"),
-    row("quantity = \"contact\"", "quantity = \"moment\"", "history.2.quantity", "not available in a solid"),
+    row("quantity = \"contact\"", "quantity = \"moment\"", "history.2.quantity", "not available in 3-D"),
     row(
         LOADED,
         "rectangle = { lower = [0.5, 1.0, 0.5], upper = [1.5, 2.0, 1.0] }",
@@ -209,7 +214,7 @@ pub const SOLID: &[Row] = &[
     ),
     row(LOADED, "rectangle = { lower = [0.5, 1.0, 2.0], upper = [1.5, 2.0, 2.0] }", "traction.0.rectangle", "no body"),
     row(LOADED, "from = [0, 1]\nto = [1, 1]", "traction.0.from", "loaded on a rectangle"),
-    row("center = [3, 1.5", "center = [9, 1.5", "traction.2.sphere", "no part of it is inside the grid"),
+    row("centre = [3, 1.5", "centre = [9, 1.5", "traction.2.sphere", "no part of it is inside the grid"),
     row("2.0], radius = 0.5 }\nstress", "2.0], radius = 1.5 }\nstress", "traction.2.sphere", "no body is at"),
     row("2.0], radius = 0.5 }\nstress", "2.0], radius = 51 }\nstress", "traction.2.sphere", "squares of the"),
     row(
@@ -223,17 +228,17 @@ pub const SOLID: &[Row] = &[
     row("[[7.0, 3, 4, 5, 5, 4, 5, 3, 6]", "[[7.0, 3, 4, 5, 3, 6, 5, 5, 4]", "traction.3.surface", "do not turn alike"),
     row("[[7.0, 3, 4, 5, 5, 4,", "[[7.0, 3, 4, 5.001, 5, 4,", "traction.3.surface", "is in 2 pieces"),
     row("[[7.0, 3, 4, 5, 5, 4, 5, 3, 6], [5, 3, 4, 5,", "[[5.0, 5, 4, 5,", "traction.3.surface.triangles", "area"),
-    row("stress = [0.0, \"1 kPa\", \"-2 kPa\"]", "stress = [0.0, \"-2 kPa\"]", "traction.0.stress", "solid: of three"),
+    row("stress = [0.0, \"1 kPa\", \"-2 kPa\"]", "stress = [0.0, \"-2 kPa\"]", "traction.0.stress", "three in 3-D"),
     row(
         "stress = [0.0, \"1 kPa\", \"-2 kPa\"]",
         "stress = { value = [0, 0, 1], at_y = 1.0, per_metre = [0, 1] }",
         "traction.0.stress.per_metre",
-        "solid: of three",
+        "three in 3-D",
     ),
     row("density = 2000", "density = 2000\nru = 1.2", "material.soil.ru", "allowed: 0 < ru < 1").down(1),
-    row("velocity = [0.0, 0.0, -1.0]", "spin = { rate = 1, about = [0, 0] }", "body.0.spin.about", "solid: of three"),
+    row("velocity = [0.0, 0.0, -1.0]", "spin = { rate = 1, about = [0, 0] }", "body.0.spin.about", "three in 3-D"),
     row("axis = [0.0, 1.0, 1.0]", "axis = [0, 0, 0]", "body.2.spin.axis", "has no direction"),
-    row("geometry = \"solid\"", "geometry = \"solid\"\naccuracy = \"draft\"", "accuracy", "give cells").down(1),
+    row("geometry = \"3d\"", "geometry = \"3d\"\naccuracy = \"draft\"", "accuracy", "give cells").down(1),
     row("cell  = [0.5, 1.0, 0.5]", "knots = { x = [0, 2, 4], y = [0, 3] }", "grid.knots.z", "has breakpoints along z"),
 ];
 
@@ -251,21 +256,21 @@ pub const IN_A_PLANE: &[Row] = &[
     .down(2),
     row(
         "bottom = \"fixed\"",
-        "bottom = \"fixed\"\n[[traction]]\nsphere = { center = [0, 1], radius = 1 }\npressure = 1",
+        "bottom = \"fixed\"\n[[traction]]\nsphere = { centre = [0, 1], radius = 1 }\npressure = 1",
         "traction.0.sphere",
         "is in space",
     )
     .down(2),
     row(
         "bottom = \"fixed\"",
-        "bottom = \"fixed\"\n[footing]\ndisc = { center = [0, 1], radius = 1 }\ndisplacement = [0, -1]",
+        "bottom = \"fixed\"\n[footing]\ndisc = { centre = [0, 1], radius = 1 }\ndisplacement = [0, -1]",
         "footing.disc",
         "is in space",
     )
     .down(2),
     row(
         "box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }",
-        "sphere = { center = [1.0, 1.0], radius = 0.5 }",
+        "sphere = { centre = [1.0, 1.0], radius = 0.5 }",
         "body.0.sphere",
         "is a shape in space",
     ),
@@ -292,21 +297,21 @@ fn thin_walls_are_warned_of() {
 #[test]
 fn the_default_match_of_a_cone_is_warned_of_outside_of_plane_strain() {
     let warned = |base: &str, given: &str| {
-        let law = format!("model = \"drucker-prager\"\nfriction = 30\ncohesion = 1e3{given}\n");
-        let text = base.replacen("model   = \"hencky\"", &law, 1);
+        let law = format!("model = \"drucker-prager\"\nfriction_angle = 30\ncohesion = 1e3{given}\n");
+        let text = base.replacen("model   = \"elastic\"", &law, 1);
         let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
         warnings.into_iter().find(|told| told.contains("mohr-coulomb's"))
     };
     for base in [super::SOLID, super::ROUND] {
         let told = warned(base, "").expect("a warning");
         // (3 - sin 30)/sqrt(13) and (3 + sin 30)/sqrt(13).
-        assert!(told.contains("material.soil.match: not given") && told.contains("69.3 %"), "{told}");
+        assert!(told.contains("material.soil.fit: not given") && told.contains("69.3 %"), "{told}");
         assert!(told.contains("97.1 % in extension") && told.contains("give \"outer\""), "{told}");
         for word in ["outer", "inner", "plane-strain"] {
             assert_eq!(warned(base, &format!("\nmatch = \"{word}\"")), None);
         }
     }
-    let flat = warned(super::STATIC, "\nmatch = \"outer\"").expect("a warning");
+    let flat = warned(super::STATIC, "\nfit = \"outer\"").expect("a warning");
     assert!(flat.contains("in plane strain this cone has"), "{flat}");
 }
 

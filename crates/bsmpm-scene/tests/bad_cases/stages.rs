@@ -10,9 +10,9 @@ pub const STAGES: &[Row] = &[
     row("add  = [\"fill\"]", "add = [\"fill\", \"fill\"]", "stage.0.add", "has been placed before"),
     row("remove = [\"fill\"]", "remove = [\"fill\", \"fill\"]", "stage.1.remove", "has been removed before"),
     row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "is not there yet").down(1),
-    row("add  = [\"fill\"]", "apply = [\"fill\"]", "stage.0.apply", "there is no [[traction]]"),
-    row("add  = [\"fill\"]", "apply = [\"plough\"]", "stage.0.apply", "plough has moved before it acts"),
-    row("add  = [\"fill\"]", "apply = [\"pipe\"]", "rigid.1.start_velocity", "a stage applies it later, at rest")
+    row("add  = [\"fill\"]", "activate = [\"fill\"]", "stage.0.activate", "there is no [[traction]]"),
+    row("add  = [\"fill\"]", "activate = [\"plough\"]", "stage.0.activate", "plough has moved before it acts"),
+    row("add  = [\"fill\"]", "activate = [\"pipe\"]", "rigid.1.start_velocity", "a stage applies it later, at rest")
         .down(47),
     row(
         "add  = [\"fill\"]",
@@ -70,7 +70,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
     .down(4),
     row(
         "points_per_cell = 3",
-        "points_per_cell = 3\n[[stage]]\nat = 0.5\napply = [\"wall\"]\n\
+        "points_per_cell = 3\n[[stage]]\nat = 0.5\nactivate = [\"wall\"]\n\
          [[rigid]]\nname = \"wall\"\npolygon = [[1, 0], [1.5, 0], [1.5, 2], [1, 2]]",
         "rigid.0.polygon",
         "at t = 0.5, when a stage applies it, body.0 is in it",
@@ -78,9 +78,9 @@ pub const STAGES_OF_ONE: &[Row] = &[
     .down(6),
     row(
         "points_per_cell = 3",
-        "points_per_cell = 3\n[[stage]]\nat = 0.5\napply = [\"lid\"]\n[[rigid]]\nname = \"lid\"\n\
+        "points_per_cell = 3\n[[stage]]\nat = 0.5\nactivate = [\"lid\"]\n[[rigid]]\nname = \"lid\"\n\
          polygon = [[0, 1], [2, 1], [2, 2], [0, 2]]\n[[point_load]]\nname = \"lid\"\nat = [1.0, 0.5]\nforce = [0, -1]",
-        "stage.0.apply",
+        "stage.0.activate",
         "more than one of what a stage may apply is named \"lid\"",
     )
     .down(3),
@@ -103,24 +103,24 @@ pub const STAGES_OF_ONE: &[Row] = &[
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
-         [[stage]]\nat = 0.5\napply = [\"push\"]\nrelease = [\"push\"]",
-        "stage.0.apply",
+         [[stage]]\nat = 0.5\nactivate = [\"push\"]\ndeactivate = [\"push\"]",
+        "stage.0.activate",
         "push is released by this stage, too",
     )
     .down(8),
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
-         [[stage]]\nat = 0.5\napply = [\"push\"]\n[[stage]]\nat = 0.75\napply = [\"push\"]",
-        "stage.1.apply",
+         [[stage]]\nat = 0.5\nactivate = [\"push\"]\n[[stage]]\nat = 0.75\nactivate = [\"push\"]",
+        "stage.1.activate",
         "push acts already",
     )
     .down(11),
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
-         [[stage]]\nat = 0.5\nrelease = [\"push\"]\n[[stage]]\nat = 0.75\nrelease = [\"push\"]",
-        "stage.1.release",
+         [[stage]]\nat = 0.5\ndeactivate = [\"push\"]\n[[stage]]\nat = 0.75\ndeactivate = [\"push\"]",
+        "stage.1.deactivate",
         "push does not act",
     )
     .down(11),
@@ -137,7 +137,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
          [[stage]]\nat = 0.5\nmaterials = [{ from = \"heavy\", to = \"soil\" }]\n\
-         [material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3",
+         [material.heavy]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3",
         "stage.0.materials.0.from",
         "no body is made of material.heavy",
     )
@@ -146,7 +146,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
          [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"heavy\" }]\n\
-         [material.heavy]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\nunit_weight = 2e4",
+         [material.heavy]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\nunit_weight = 2e4",
         "stage.0.materials.0.to",
         "differ in density",
     )
@@ -155,7 +155,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
          [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"soft\" }]\n\
-         [material.soft]\nmodel = \"modified-cam-clay\"\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\n\
+         [material.soft]\nmodel = \"modified-cam-clay\"\nkappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = 1\n\
          ocr = 1.5\nyoung = 1e6\npoisson = 0.3",
         "stage.0.materials.0.to",
         "is not told by the stress",
@@ -209,9 +209,9 @@ pub const STAGES_OF_ONE: &[Row] = &[
     )
     .down(2),
     row(
-        "[material.soil]\nmodel   = \"hencky\"",
+        "[material.soil]\nmodel   = \"elastic\"",
         "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 0.6\n[[stage]]\nat = 0.5\nstrength_reduction = 1.1\n\
-         [material.soil]\nunit_weight = 2e4\nkappa = 0.02\nlambda = 0.1\ncritical_ratio = 1\nocr = 1.5\n\
+         [material.soil]\nunit_weight = 2e4\nkappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = 1\nocr = 1.5\n\
          model = \"modified-cam-clay\"",
         "stage.0.strength_reduction",
         "cannot be divided under the stress",

@@ -100,7 +100,7 @@ fn i20_counts_are_bounded_before_anything_is_made() {
     assert!(set(&["grid.upper=[1e9, 1e9]", "grid.cell=1"]).is_err());
     let errors = set(&["grid.upper=[40000, 40000]", "grid.cell=1"]).unwrap_err();
     assert!(errors[0].message.contains("1600000000 cells and 3200320008 unknowns"), "{errors:?}");
-    let large = set(&["grid.cell=1e-4", "grid.order=linear", "body.0.points_per_cell=1"]).unwrap();
+    let large = set(&["grid.cell=1e-4", "grid.degree=linear", "body.0.points_per_cell=1"]).unwrap();
     let estimate = large.estimate(1);
     assert_eq!(estimate.points, 200_000_000);
     assert!(estimate.bytes > 100_000_000_000, "{estimate:?}");

@@ -46,14 +46,14 @@ const VALUES: [&str; 22] = [
 /// The least that suction above a level needs.
 const SUCTION: &str = r#"geometry = "plane-strain"
 analysis = { type = "consolidation", end = "1 d", dt = "1 h" }
-grid = { lower = [0.0, 0.0], upper = [2.0, 2.0], cell = 1, order = "quadratic" }
+grid = { lower = [0.0, 0.0], upper = [2.0, 2.0], cell = 1, degree = "quadratic" }
 water = { level = 0.5, suction = "5 kPa", drainage = "coupled" }
 gravity = { acceleration = [0.0, -9.81] }
 boundary = { bottom = "fixed" }
 stabilisation = { method = "consistent-f-bar" }
 
 [material.silt]
-model        = "hencky"
+model        = "elastic"
 young        = "1 MPa"
 poisson      = 0.3
 unit_weight  = "18 kN/m3"
@@ -73,13 +73,13 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ("geometry = \"plane-strain\"", "geometry = \"plane-strain\"\naccuracy = \"draft\""),
         ("\nk0 = 0.5", "\nk0 = 0.5\nequilibrium = \"plastic\""),
         ("reset_displacements = true", "reset_displacements = true\nstrength_reduction = 1.2"),
-        ("base = \"smooth\"", "base = \"smooth\"\nname = \"strip\""),
+        ("interface = \"smooth\"", "interface = \"smooth\"\nname = \"strip\""),
         ("components = \"all\"", "components = \"all\"\nname = \"plate\""),
         ("\nramp = \"0.5 s\"", "\nramp = \"0.5 s\"\nname = \"surcharge\""),
         ("\nramp = 0.5\n", "\nramp = 0.5\nname = \"push\"\n"),
         (
             "remove = [\"fill\"]",
-            "remove = [\"fill\"]\napply = [\"push\"]\nrelease = [\"surcharge\"]\n\
+            "remove = [\"fill\"]\nactivate = [\"push\"]\ndeactivate = [\"surcharge\"]\n\
              boundary = { left = \"fixed\", right = \"free\", bottom = \"roller\", top = \"free\" }\n\
              materials = [{ from = \"block\", to = \"block\" }]",
         ),
@@ -94,15 +94,18 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ("cohesion    = 2e4", "yield_stress = 2e4\nhardening = 1e3"),
         ("every  = \"0.1 s\"", "every_steps = 20\ncheckpoint = { wall = \"10 min\", every_steps = 50, keep = 3 }"),
         ("quantity = \"heave\"", "quantity = \"height\"\nat_x = 1.0"),
-        ("bottom = \"fixed\"", "bottom = { friction = 0.3, lifts = true }"),
+        ("bottom = \"fixed\"", "bottom = { friction_coefficient = 0.3, separates = true }"),
     ],
     &[
-        ("dt   = \"10 ms\"", "dt = 0.01\ngamma = 0.6"),
+        ("dt   = \"10 ms\"", "dt = 0.01\nnewmark_gamma = 0.6"),
         ("stress = [0.0, \"-20 kPa\"]\nramp = \"0.5 s\"", "pressure_path = [[\"0.2 s\", \"1 kPa\"], [1.0, 0.0]]"),
         ("\"tresca\"", "\"modified-cam-clay\""),
-        ("cohesion    = 2e4", "kappa = 0.02\nlambda = 0.1\ncritical_ratio = 1.2\npreconsolidation = \"50 kPa\""),
+        (
+            "cohesion    = 2e4",
+            "kappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = 1.2\npreconsolidation = \"50 kPa\"",
+        ),
         ("model    = \"mohr-coulomb\"", "model = \"drucker-prager\""),
-        ("separation = \"forgotten\"", "match = \"inner\""),
+        ("separation = \"plastic\"", "fit = \"inner\""),
         ("cell  = [0.5, \"50 cm\"]", "knots = { x = [0, 0.5, 1.5, \"4 m\"], y = [0, 1, 2, 3] }"),
     ],
     &[
@@ -110,8 +113,8 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ("k0          = 0.6\n", ""),
         ("model    = \"mohr-coulomb\"", "model = \"mohr-coulomb-softening\""),
         (
-            "separation = \"forgotten\"",
-            "residual_friction = 20\nresidual_dilation = 5\nresidual_cohesion = 10\nsoftening_strain = 0.2\n\
+            "separation = \"plastic\"",
+            "residual_friction_angle = 20\nresidual_dilation_angle = 5\nresidual_cohesion = 10\nsoftening_strain = 0.2\n\
              softening = \"exponential\"\nband_width = 0.1",
         ),
         ("factor = 1.25", "factor = 1.25\nelastic = false\nstiffness = 1.5\nunloaded = false"),
@@ -121,11 +124,11 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ("path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]", "velocity = [-0.1, 0.0]"),
         ("density = \"0.5 t/m3\"", "mass = 50"),
         ("\"tresca\"", "\"modified-cam-clay\""),
-        ("cohesion    = 2e4", "kappa = 0.02\nlambda = 0.1\ncritical_ratio = 1.2\nocr = 1.5"),
+        ("cohesion    = 2e4", "kappa = 0.04\nlambda = 0.2\nvoid_ratio = 1.0\ncritical_state_ratio = 1.2\nocr = 1.5"),
         ("factor = 1.25", "factor = 1.0"),
         ("velocity = [0.0, \"-10 mm/s\"]", "displacement = [-0.1, 0.0]"),
         (
-            "{ circle = { center = [2.75, 2.0], radius = \"10 cm\" } }",
+            "{ circle = { centre = [2.75, 2.0], radius = \"10 cm\" } }",
             "{ polygon = [[2.6, 1.6], [2.9, 1.6], [2.9, 1.9]] }",
         ),
     ],
@@ -146,7 +149,7 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ),
     ],
     &[
-        ("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "circle = { center = [2.75, 2.0], radius = \"10 cm\" }"),
+        ("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "circle = { centre = [2.75, 2.0], radius = \"10 cm\" }"),
         ("stress = [0.0, \"-20 kPa\"]", "pressure = { value = 1e3, at_y = 3.0, per_metre = \"10 kPa/m\" }"),
         ("velocity = [0.0, \"-1 m/s\"]", "spin = { rate = 2.0, about = [1.5, \"2 m\"] }"),
         ("\"tresca\"", "\"mu-i\""),
@@ -167,10 +170,10 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
 const LIMIT_LOAD: &str = r#"geometry = "plane-strain"
 analysis = { type = "quasi-static", steps = 4, purpose = "limit-load" }
 boundary = { bottom = "fixed", left = "roller", right = "roller" }
-grid = { lower = [0.0, 0.0], upper = [4.0, 2.5], cell = 0.25, order = "quadratic" }
+grid = { lower = [0.0, 0.0], upper = [4.0, 2.5], cell = 0.25, degree = "quadratic" }
 material.clay = { model = "tresca", young = "5 MPa", poisson = 0.49, cohesion = "10 kPa" }
 body = [{ material = "clay", box = { lower = [0.0, 0.0], upper = [4.0, 2.0] }, points_per_cell = 2 }]
-footing = { from = [0.0, 2.0], to = [1.0, 2.0], displacement = [0.0, -0.1], base = "smooth" }
+footing = { from = [0.0, 2.0], to = [1.0, 2.0], displacement = [0.0, -0.1], interface = "smooth" }
 stabilisation = { method = "consistent-f-bar" }
 "#;
 
@@ -211,11 +214,11 @@ fn bases() -> Vec<String> {
     let knots = "knots = { x = [0.0, 0.5, 1.5, 4.0], y = [0.0, 1.0, 2.0, 3.0], z = [0.0, 1.0, 1.0, 3.0] }";
     let otherwise = SOLID.replacen("cell  = [0.5, 1.0, 0.5]", knots, 1);
     let plate = "rectangle    = { lower = [0.5, 2.0, 1.0], upper = [1.5, 3.0, 1.0] }";
-    let disc = "disc = { center = [1.25, 0.5, 1.0], radius = 0.25, normal = \"z\" }";
-    let otherwise = otherwise.replacen(plate, "disc = { center = [1.0, 2.5, 1.0], radius = 0.25 }", 1);
+    let disc = "disc = { centre = [1.25, 0.5, 1.0], radius = 0.25, normal = \"z\" }";
+    let otherwise = otherwise.replacen(plate, "disc = { centre = [1.0, 2.5, 1.0], radius = 0.25 }", 1);
     let base = "base = [[2.0, 0.0, 2.5], [4.0, 0.0, 2.5], [2.0, 3.0, 2.6], [4.0, 3.0, 2.75]]";
     let otherwise = otherwise.replacen("level = 2.5", base, 1);
-    let ball = "sphere = { center = [3.5, 0.5, 2.0], radius = 0.25 }";
+    let ball = "sphere = { centre = [3.5, 0.5, 2.0], radius = 0.25 }";
     let ground = "terrain = { top = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0], [4.0, 3.0, 0.0]] }";
     let otherwise = otherwise.replacen(ball, ground, 1);
     bases.push(otherwise.replacen(disc, "rectangle = { lower = [0.5, 0.0, 1.0], upper = [1.5, 1.0, 1.0] }", 1));
@@ -310,7 +313,7 @@ fn every_key_renamed_is_unknown_and_every_key_removed_is_missed_if_it_must_be_th
             }
             let removed = without(&base, &written);
             let fills = ["\naccuracy = ", "purpose = "].iter().any(|key| base.contains(key));
-            let is_filled = fills && ["points_per_cell", "order", "method"].contains(&written.of.1);
+            let is_filled = fills && ["points_per_cell", "degree", "method"].contains(&written.of.1);
             match written.presence {
                 Presence::Required if !is_filled => refuses(&removed, &written.path, "missing", None),
                 Presence::Required => {

@@ -8,7 +8,7 @@ use bsmpm_scene::{Acting, Base, Face, Initial, LoadedLine, Push, Site};
 
 #[test]
 fn strips_loads_and_initial_stress_arrive() {
-    let case = valid(FULL, &["footing.base=\"rough\""]);
+    let case = valid(FULL, &["footing.interface=\"rough\""]);
     let footing = case.footing.unwrap();
     assert_eq!((footing.site.ends(), footing.base), (Some([[1.0, 2.5], [2.0, 2.5]]), Base::Rough));
     assert_eq!(footing.path.rows, [(1.0, [0.0, -0.1, 0.0])]);
@@ -35,7 +35,7 @@ fn strips_loads_and_initial_stress_arrive() {
 /// On the top of a block, beside it, and beneath what lies over it.
 #[test]
 fn what_lies_on_the_ground_has_no_part_in_the_stress_at_the_start() {
-    let case = valid(FULL, &["prescribed.1.components={ friction = 0.3, lifts = true }"]);
+    let case = valid(FULL, &["prescribed.1.components={ friction_coefficient = 0.3, separates = true }"]);
     let rest: Vec<bool> = case.prescribed.iter().map(|of| of.rests).collect();
     assert!(case.footing.is_some_and(|footing| footing.rests) && rest == [false, true], "{rest:?}");
     let beside = ["footing.from=[2, 2]", "footing.to=[2, 2.5]", "footing.displacement=[-0.1, 0]"];
@@ -107,19 +107,19 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
     };
     assert_eq!(side("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3"), -1.0, "below, on the right of its way");
     assert_eq!(side("from = [1.0, 1.25], to = [0.0, 1.25], pressure = 1e3"), 1.0);
-    assert_eq!(side("circle = { center = [0.5, 2.0], radius = 0.4 }, pressure = 1e3"), 1.0, "a disc");
-    let hole = "circle = { center = [2.75, 2.0], radius = 0.1 }, pressure = { value = 0.0, at_y = \"3 m\", per_metre = \"10 kPa/m\" }";
+    assert_eq!(side("circle = { centre = [0.5, 2.0], radius = 0.4 }, pressure = 1e3"), 1.0, "a disc");
+    let hole = "circle = { centre = [2.75, 2.0], radius = 0.1 }, pressure = { value = 0.0, at_y = \"3 m\", per_metre = \"10 kPa/m\" }";
     assert_eq!(side(hole), -1.0, "what surrounds it");
     let (line, _, largest) = push(hole);
     assert_eq!(line, LoadedLine::Circle { center: [2.75, 2.0], radius: 0.1 });
     assert!((largest - 11e3).abs() < 1e-9, "at its lowest place: {largest}");
     for (traction, told) in [
         ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "bodies lie on both sides of it"),
-        ("circle = { center = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "no part of it is inside the grid"),
-        ("circle = { center = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "no body is at"),
+        ("circle = { centre = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "no part of it is inside the grid"),
+        ("circle = { centre = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "no body is at"),
         ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "only one of stress, pressure, "),
         (
-            "from = [0.0, 1.25], circle = { center = [0.5, 2.0], radius = 0.4 }, pressure = 1e3",
+            "from = [0.0, 1.25], circle = { centre = [0.5, 2.0], radius = 0.4 }, pressure = 1e3",
             "only one of from, circle",
         ),
         ("from = [0.0, 1.25], to = [1.0, 1.25]", "missing: one of stress, pressure, "),
@@ -134,14 +134,14 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
 #[test]
 fn a_pressure_acts_on_what_stages_leave_free() {
     let ground = "geometry = 'plane-strain'\nanalysis = { type = 'quasi-static', steps = 4 }\n\
-                  grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, order = 'quadratic' }\n\
-                  material.soil = { model = 'hencky', young = 1e6, poisson = 0.3 }\nboundary = { bottom = 'fixed' }\n\
+                  grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, degree = 'quadratic' }\n\
+                  material.soil = { model = 'elastic', young = 1e6, poisson = 0.3 }\nboundary = { bottom = 'fixed' }\n\
                   [[body]]\nmaterial = 'soil'\nbox = { lower = [0, 0], upper = [4, 2] }\npoints_per_cell = 2\n\
                   [[body]]\nname = 'fill'\nmaterial = 'soil'\nbox = { lower = [0, 2], upper = [4, 3] }\npoints_per_cell = 2\n\
                   [[traction]]\nname = 'air'\nfrom = [0, 2]\nto = [4, 2]\npressure = 10.0\n[[stage]]\nat = 0.5\n";
     for (stage, acts) in [
-        ("remove = ['fill']\napply = ['air']", true),
-        ("add = ['fill']\nrelease = ['air']", true),
+        ("remove = ['fill']\nactivate = ['air']", true),
+        ("add = ['fill']\ndeactivate = ['air']", true),
         ("remove = ['fill']", false),
         ("add = ['fill']", false),
     ] {
@@ -162,8 +162,8 @@ fn rigid_bodies_that_faces_cut_and_that_stay_outside_are_told() {
     let with = |rigid: &str| {
         let text = format!(
             "geometry = 'plane-strain'\nanalysis = {{ type = 'quasi-static', steps = 4 }}\n\
-             grid = {{ lower = [0, 0], upper = [4, 4], cell = 0.5, order = 'quadratic' }}\n\
-             material.soil = {{ model = 'hencky', young = 1e6, poisson = 0.3 }}\n\
+             grid = {{ lower = [0, 0], upper = [4, 4], cell = 0.5, degree = 'quadratic' }}\n\
+             material.soil = {{ model = 'elastic', young = 1e6, poisson = 0.3 }}\n\
              boundary = {{ bottom = 'fixed', left = 'roller' }}\n\
              [[body]]\nmaterial = 'soil'\nbox = {{ lower = [0, 0], upper = [4, 2] }}\npoints_per_cell = 2\n\
              [[rigid]]\nname = 'it'\n{rigid}\n"
@@ -175,7 +175,7 @@ fn rigid_bodies_that_faces_cut_and_that_stay_outside_are_told() {
     let away = "does not come into it";
     for (rigid, told) in [
         (format!("polygon = [[-1, 2], [1, 2], [1, 3], [-1, 3]]\n{push}"), cut),
-        (format!("circle = {{ center = [0, 3], radius = 1 }}\n{push}"), cut),
+        (format!("circle = {{ centre = [0, 3], radius = 1 }}\n{push}"), cut),
         ("polygon = [[5, 2], [6, 2], [6, 3], [5, 3]]".to_owned(), away),
         (format!("polygon = [[6, 2], [7, 2], [7, 3], [6, 3]]\n{push}"), away),
     ] {
@@ -196,9 +196,9 @@ fn rigid_bodies_that_faces_cut_and_that_stay_outside_are_told() {
 /// neither a quarter of x's cells nor of y's lay in it.
 #[test]
 fn a_pressure_finds_a_body_that_is_thinner_than_cells_are_long() {
-    let plate = "geometry = 'solid'\nanalysis = { type = 'quasi-static', steps = 1 }\n\
-                 grid = { lower = [0, 0, 0], upper = [4, 2, 2], cell = [1, 1, 0.1], order = 'quadratic' }\n\
-                 material.rubber = { model = 'hencky', young = 1e6, poisson = 0.3 }\nboundary = { left = 'fixed' }\n\
+    let plate = "geometry = '3d'\nanalysis = { type = 'quasi-static', steps = 1 }\n\
+                 grid = { lower = [0, 0, 0], upper = [4, 2, 2], cell = [1, 1, 0.1], degree = 'quadratic' }\n\
+                 material.rubber = { model = 'elastic', young = 1e6, poisson = 0.3 }\nboundary = { left = 'fixed' }\n\
                  [[body]]\nmaterial = 'rubber'\nbox = { lower = [0, 0, 0.5], upper = [4, 2, 0.7] }\npoints_per_cell = 2\n\
                  [[traction]]\nrectangle = { lower = [0, 0, 0.5], upper = [4, 2, 0.5] }\npressure = 10.0\n";
     for set in [&[] as &[&str], &["grid.cell=1.0"]] {
@@ -260,12 +260,12 @@ fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
 #[test]
 fn loads_by_depth_in_a_solid_have_the_resultants_of_a_trapezium() {
     let cube = r#"
-        geometry = "solid"
+        geometry = "3d"
         analysis = { type = "quasi-static", steps = 1 }
-        grid = { lower = [0, -10, 1], upper = [1.5, -9, 2.5], cell = 0.25, order = "quadratic" }
+        grid = { lower = [0, -10, 1], upper = [1.5, -9, 2.5], cell = 0.25, degree = "quadratic" }
         boundary = { bottom = "fixed" }
         [material.soil]
-        model = "hencky"
+        model = "elastic"
         young = "1 MPa"
         poisson = 0.3
         [[body]]
@@ -306,10 +306,10 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
     let base = r#"
         geometry = "plane-strain"
         analysis = { type = "dynamic", end = 1, dt = 0.01 }
-        grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, order = "quadratic" }
+        grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, degree = "quadratic" }
         boundary = { left = "roller", right = "roller", bottom = "absorbing" }
         [material.soil]
-        model = "hencky"
+        model = "elastic"
         young = "10 MPa"
         poisson = 0.3
         density = 2000
@@ -331,8 +331,8 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
     assert!(told(&[&lasting], "traction.0") && !told(&[&shear], "") && !told(&[&back], ""));
     assert!(told(&[&strip("pressure = 1e3")], "traction.0") && !told(&[&lasting, "boundary.bottom=fixed"], ""));
     assert!(told(&[&shear, "boundary.left=absorbing", "boundary.right=absorbing"], "traction.0"));
-    let (whole, half) = ("center = [2, 2], radius = 0.5", "center = [2, 3], radius = 0.5");
-    let hole = "body.0.subtract=[{ circle = { center = [2, 2], radius = 0.5 } }, { circle = { center = [2, 3], radius = 0.5 } }]";
+    let (whole, half) = ("centre = [2, 2], radius = 0.5", "centre = [2, 3], radius = 0.5");
+    let hole = "body.0.subtract=[{ circle = { centre = [2, 2], radius = 0.5 } }, { circle = { centre = [2, 3], radius = 0.5 } }]";
     let round = |circle: &str| format!("traction.0={{ circle = {{ {circle} }}, pressure = 1e3, ramp = 0.1 }}");
     assert!(!told(&[hole, &round(whole), "body.0.box.upper=[4, 4]"], ""));
     assert!(told(&[hole, &round(half), "grid.upper=[4, 3]"], "traction.0"));
@@ -354,7 +354,7 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
 fn names_and_ramps_of_what_has_none() {
     let footing = "footing={ from = [0, 1], to = [2, 1], displacement = [0, -0.1] }";
     let named = "traction.0={ name = \"footing\", from = [0, 1], to = [2, 1], stress = [0, -1] }";
-    let release = "stage=[{ at = 0.5, release = [\"footing\"] }]";
+    let release = "stage=[{ at = 0.5, deactivate = [\"footing\"] }]";
     let released = |set: &[&str]| valid(STATIC, &[set, &[release]].concat()).stages[0].release.clone();
     assert_eq!(released(&[footing]), [("footing".to_owned(), Acting::Strip(0))]);
     assert_eq!(released(&[footing, named]), [("footing".to_owned(), Acting::Load(0))], "what was given the name");
@@ -362,7 +362,7 @@ fn names_and_ramps_of_what_has_none() {
         let block = format!("rigid.0={{ name = \"block\", polygon = [[0, 1], [1, 1], [1, 3], [0, 3]], {more} }}");
         valid(STATIC, &[&block]).warnings.join(" ").contains("does nothing")
     };
-    assert!(block("amplitude = [[1, 1]]") && block("ramp = 0.5") && !block("friction = 0.1"));
+    assert!(block("amplitude = [[1, 1]]") && block("ramp = 0.5") && !block("friction_coefficient = 0.1"));
     assert!(!block("ramp = 0.5, free = [\"y\"], force = [0, -1]"));
 }
 
@@ -372,11 +372,11 @@ fn rigid_bodies_stay_out_of_the_free_field_on_their_way() {
     let base = r#"
         geometry = "plane-strain"
         analysis = { type = "dynamic", end = 1, dt = 0.01 }
-        grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, order = "quadratic" }
+        grid = { lower = [0, 0], upper = [4, 4], cell = 0.5, degree = "quadratic" }
         boundary = { left = "free-field", right = "free-field", bottom = "fixed" }
         shaking = { acceleration = [[0, 0, 0], [1, 1, 0]] }
         [material.soil]
-        model = "hencky"
+        model = "elastic"
         young = "10 MPa"
         poisson = 0.3
         density = 2000
@@ -391,7 +391,7 @@ fn rigid_bodies_stay_out_of_the_free_field_on_their_way() {
         let of = |side: &str| told.contains(&format!("boundary.{side}")) && told.contains("a rigid body acts");
         ["left", "right"].map(of)
     };
-    assert_eq!(refused("friction = 0.1"), [false; 2]);
+    assert_eq!(refused("friction_coefficient = 0.1"), [false; 2]);
     assert_eq!(refused("path = [[0.1, -0.6, 0], [0.2, 0, 0]]"), [true, false]);
     assert_eq!(refused("displacement = [1.6, 0]"), [false, true]);
     assert_eq!(refused("rotation = [[1, 90]], about = [3, 3.5]"), [false, true]);
@@ -423,8 +423,8 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
 #[test]
 fn sections_beside_what_acts_are_warned_of() {
     let block = "geometry = 'plane-strain'\nanalysis = { type = 'quasi-static', steps = 4 }\n\
-                 grid = { lower = [0, 0], upper = [8, 6], cell = 0.5, order = 'quadratic' }\n\
-                 material.soil = { model = 'hencky', young = 1e6, poisson = 0.3 }\nboundary = { bottom = 'fixed' }\n\
+                 grid = { lower = [0, 0], upper = [8, 6], cell = 0.5, degree = 'quadratic' }\n\
+                 material.soil = { model = 'elastic', young = 1e6, poisson = 0.3 }\nboundary = { bottom = 'fixed' }\n\
                  [[body]]\nmaterial = 'soil'\nbox = { lower = [0, 0], upper = [8, 4] }\npoints_per_cell = 2\n";
     let told = |section: &str, acts: &str| {
         let case = format!("{block}[[history]]\nquantity = 'section-forces'\n{section}\n{acts}");
@@ -440,7 +440,7 @@ fn sections_beside_what_acts_are_warned_of() {
     assert_eq!([3.25, 3.75, 4.0].map(|y| told(&level(y), footing)), [0, 0, 0], "where the material ends");
     assert_eq!([2.5, 4.0].map(|x| told(&upright(x), footing)), [1, 0], "upright");
     assert_eq!(told("from = [2.5, 0]\nto = [2.5, 2]", footing), 0, "ends far below");
-    let pipe = "[[rigid]]\nname = 'pipe'\ncircle = { center = [4, 4.5], radius = 0.5 }\ndisplacement = [0, -0.1]";
+    let pipe = "[[rigid]]\nname = 'pipe'\ncircle = { centre = [4, 4.5], radius = 0.5 }\ndisplacement = [0, -0.1]";
     assert_eq!([told(&upright(4.0), pipe), told(&upright(6.0), pipe)], [1, 0]);
     assert_eq!(told(&level(2.5), "[[point_load]]\nat = [4, 2]\nforce = [0, -1]"), 1);
 }

@@ -39,7 +39,7 @@ fn values_arrive_as_toml_bare_words_and_units() {
     assert_eq!(valid(FULL, &["grid.cell=25 cm"]).grid.axes[1].cells(), 12);
     assert_eq!(valid(FULL, &["grid.cell=\"25 cm\""]).grid.axes[1].cells(), 12);
     assert_eq!(valid(FULL, &["grid.cell=[0.25, 0.5]"]).grid.axes[1].cells(), 6);
-    assert_eq!(valid(FULL, &["grid.order=cubic"]).grid.order, 3);
+    assert_eq!(valid(FULL, &["grid.degree=cubic"]).grid.order, 3);
     assert_eq!(valid(FULL, &[" stabilisation.method = none "]).stabilisation, Stabilisation::None);
     assert_eq!(valid(FULL, &["title=two words = one title"]).title, "two words = one title");
     assert!(!valid(FULL, &["solver.reproducible=false"]).solver.reproducible);
@@ -54,7 +54,7 @@ fn lists_are_reached_by_index_and_absent_tables_are_made() {
     let case =
         valid(STATIC, &["history.0.quantity=height", "history.1.quantity=mass", "check.0={quantity=\"mass\", min=0}"]);
     assert_eq!((case.histories.len(), case.checks[0].min), (2, Some(0.0)));
-    assert_eq!(valid(STATIC, &["material.clay={model=\"hencky\", young=1e6, poisson=0}"]).materials[1].name, "clay");
+    assert_eq!(valid(STATIC, &["material.clay={model=\"elastic\", young=1e6, poisson=0}"]).materials[1].name, "clay");
     assert_eq!(valid(STATIC, &["solver.linear.pc=lu"]).solver.linear.factor, Some(Factor::Mumps));
 }
 
@@ -80,7 +80,7 @@ fn one_of_two_exclusive_keys_removes_the_other() {
     let case = valid(FULL, &["grid.knots.x=[0, 1, 4]", "grid.knots.y=[0, 1.5, 3]"]);
     assert_eq!(case.grid.axes, [GridAxis::Graded(vec![0.0, 1.0, 4.0]), GridAxis::Graded(vec![0.0, 1.5, 3.0])]);
     assert_eq!(valid(&case.text, &["grid.cell=1"]).grid.axes[0].cells(), 4);
-    let round = valid(FULL, &["body.3.circle={center=[3, 2], radius=0.5}"]);
+    let round = valid(FULL, &["body.3.circle={centre=[3, 2], radius=0.5}"]);
     assert_eq!(round.bodies[3].bounds(), [[2.5, 1.5], [3.5, 2.5]]);
     assert_eq!(valid(FULL, &["body.4.box={lower=[0, 2], upper=[0.5, 2.5]}"]).bodies[4].area(), 0.25);
     let moved = |set: &str| valid(FULL, &[set]).footing.unwrap().path.rows;
@@ -114,7 +114,7 @@ fn errors_cite_the_override() {
         ("grid.cell=[1", "grid.cell", "no valid TOML"),
         ("a.b.c.d.e.f.g.h=1", "a.b.c.d.e.f.g.h", "no key path"),
         ("material.mud.young=1", "material.mud.model", "missing"),
-        ("footing.base=soft", "footing.base", "expected one of \"smooth\", \"rough\""),
+        ("footing.interface=soft", "footing.interface", "expected one of \"smooth\", \"rough\""),
         ("strength_reduction.factor=0.01", "strength_reduction.factor", "0.1 <= factor <= 100"),
         ("body.3.subtract.0.circle.radius=0", "body.3.subtract.0.circle.radius", "radius > 0"),
         ("profile.0.end=1", "profile.0.end", "unknown key"),
@@ -208,7 +208,7 @@ fn the_full_case_in_si() {
 fn the_background_is_a_ten_thousandth_at_rest_unless_the_case_wants_another() {
     let coefficient = |text: &str, overrides: &[&str]| valid(text, overrides).solver.background;
     for order in ["linear", "quadratic", "cubic"] {
-        assert_eq!(coefficient(STATIC, &[&format!("grid.order={order}")]), 1e-4);
+        assert_eq!(coefficient(STATIC, &[&format!("grid.degree={order}")]), 1e-4);
     }
     assert_eq!(coefficient(STATIC, &["solver.background=0.5"]), 0.5);
     let warnings = |set: &[&str]| valid(STATIC, set).warnings.join("\n");
@@ -274,17 +274,17 @@ fn points_weigh_fitted_volumes_where_unlike_materials_meet_on_a_c0_line() {
     let layers = include_str!("../../../../cases/validation/two_densities.toml");
     let layers = |set: &[&str]| valid(layers, set).solver.quadrature;
     assert_eq!(layers(&[]), Quadrature::Fitted);
-    assert_eq!(layers(&["grid.order=linear"]), Quadrature::Fitted);
-    assert_eq!(layers(&["grid.order=cubic"]), Quadrature::Points);
+    assert_eq!(layers(&["grid.degree=linear"]), Quadrature::Fitted);
+    assert_eq!(layers(&["grid.degree=cubic"]), Quadrature::Points);
     assert_eq!(layers(&["grid.c0_lines=none"]), Quadrature::Points);
     assert_eq!(layers(&["solver.quadrature=points"]), Quadrature::Points);
     assert_eq!(valid(STATIC, &[]).solver.quadrature, Quadrature::Points);
     assert_eq!(valid(SEEPING, &[]).solver.quadrature, Quadrature::Points);
-    let strip = "footing={ from = [0.0, 1.0], to = [1.0, 1.0], displacement = [0, -0.01], base = \"smooth\" }";
+    let strip = "footing={ from = [0.0, 1.0], to = [1.0, 1.0], displacement = [0, -0.01], interface = \"smooth\" }";
     assert_eq!(valid(STATIC, &[strip]).solver.quadrature, Quadrature::Points);
     assert_eq!(valid(STATIC, &[fitted]).solver.quadrature, Quadrature::Fitted);
     assert_eq!(valid(FULL, &["solver.quadrature=points"]).solver.quadrature, Quadrature::Points);
-    let errors = set(STATIC, &["grid.order=cubic", fitted]).unwrap_err();
+    let errors = set(STATIC, &["grid.degree=cubic", fitted]).unwrap_err();
     assert!(errors.len() == 1 && errors[0].message.contains("linear and quadratic"), "{errors:?}");
     let errors = set(FULL, &[fitted]).unwrap_err();
     assert!(errors.len() == 1 && errors[0].message.contains("quasi-static analysis"), "{errors:?}");
@@ -375,7 +375,7 @@ fn doubtful_cases_are_warned_of() {
         (FULL, "traction.0.ramp=0", "traction.0: acts in full from time 0"),
         (FULL, "point_load.0.ramp=0", "point_load.0: acts in full from time 0"),
         (FULL, "prescribed.1.path.1.0=2", "prescribed.1.path: the row at t = 2 is beyond the end"),
-        (FULL, "material.till.dilation=30.5", "above the friction angle in places"),
+        (FULL, "material.till.dilation_angle=30.5", "above the friction angle in places"),
         (FULL, "body.3.polygon=[[2.5, 1.0], [3.75, 1.0], [3, 2.5], [2.5, 2.5]]", "overlap"),
         (STATIC, "strength_reduction.factor=2", "no material has strength"),
         (FULL, "output.every=5", "beyond the end"),
@@ -389,11 +389,11 @@ fn doubtful_cases_are_warned_of() {
         assert!(warnings.iter().any(|warning| warning.contains(says)), "{change}: {warnings:?}");
     }
     let of_cubic =
-        |points: &str| valid(FULL, &["grid.order=cubic", &format!("body.*.points_per_cell={points}")]).warnings;
+        |points: &str| valid(FULL, &["grid.degree=cubic", &format!("body.*.points_per_cell={points}")]).warnings;
     let warned = |points: &str| of_cubic(points).iter().any(|warning| warning.contains("cubic splines too coarsely"));
     assert!(warned("2") && !warned("3"));
     let at_axis = |set: &[&str]| valid(ROUND, set).warnings.iter().any(|warning| warning.contains("meets the axis"));
-    let ring = ["grid.order=cubic", "body.0.box.lower=[0.25, 0.0]", "point_load.0.at=[0.5, 1.0]"];
+    let ring = ["grid.degree=cubic", "body.0.box.lower=[0.25, 0.0]", "point_load.0.at=[0.5, 1.0]"];
     assert!(at_axis(&ring[..1]) && !at_axis(&ring) && !at_axis(&[]));
     let plastic = FULL.replace("[stabilisation]\nmethod = \"f-bar\"", "");
     assert!(valid(&plastic, &[]).warnings.iter().any(|warning| warning.contains("material.sand is plastic")));
@@ -439,7 +439,7 @@ fn ground_that_its_water_cannot_leave_is_warned_of() {
     let beside = [column(1, [0.3, 0.4], "clay"), column(2, [0.1, 0.3], "clay")];
     assert!(warned(&[&wide[..], &[&beside[0], &beside[1]]].concat()).is_empty());
     let tight =
-        "material.tight={ model = \"hencky\", young = 1e6, poisson = 0.0, drainage = \"undrained\", porosity = 0.5 }";
+        "material.tight={ model = \"elastic\", young = 1e6, poisson = 0.0, drainage = \"undrained\", porosity = 0.5 }";
     let behind = [tight, &column(1, [0.3, 0.4], "clay"), &column(2, [0.1, 0.3], "tight")];
     let found = warned(&[&wide[..], &behind].concat());
     assert!(found.len() == 1 && found[0].starts_with("body.1: no drain is on it"), "{found:?}");

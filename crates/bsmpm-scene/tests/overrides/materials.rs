@@ -17,8 +17,8 @@ fn cones_and_cylinders() {
     assert_eq!(case.materials[1].material.state()[0].name, "hardening_strain");
     let note = case.notes.iter().find(|note| note.key == "material.clay").expect("a note of what is left");
     assert!(note.value.starts_with("yield_stress = 8000.0"), "{}", note.value);
-    for (given, fit) in [("", Match::PlaneStrain), (", match = \"inner\"", Match::Inner)] {
-        let case = law(&format!("model = \"drucker-prager\", friction = 30, cohesion = 1e3{given}"));
+    for (given, fit) in [("", Match::PlaneStrain), (", fit = \"inner\"", Match::Inner)] {
+        let case = law(&format!("model = \"drucker-prager\", friction_angle = 30, cohesion = 1e3{given}"));
         let Material::DruckerPrager(clay) = &case.materials[1].material else { panic!() };
         let [friction, dilation, cohesion] = clay.parameters()[..] else { panic!() };
         assert!(clay.fit() == fit && cohesion == 800.0 && dilation == 0.0);
@@ -41,19 +41,22 @@ fn cones_and_cylinders() {
 /// Faces that rub lose strength as the ground does; a word stands for a face without friction.
 #[test]
 fn friction_of_faces_is_strength() {
-    let case = valid(FULL, &["boundary.bottom={ friction = 0.5 }", "boundary.left=contact"]);
+    let case = valid(FULL, &["boundary.bottom={ friction_coefficient = 0.5 }", "boundary.left=contact"]);
     let found = |axis: usize| case.contacts[axis][0].map(|contact| (contact.friction, contact.lifts));
     assert_eq!((found(0), found(1)), (Some((0.0, true)), Some((0.4, true))));
-    assert!(case.notes.iter().any(|note| note.key == "boundary.bottom.friction" && note.value == "0.4"));
-    let held = valid(FULL, &["boundary.bottom={ friction = 0.5, lifts = false }", "strength_reduction.factor=1.0"]);
+    assert!(case.notes.iter().any(|note| note.key == "boundary.bottom.friction_coefficient" && note.value == "0.4"));
+    let held = valid(
+        FULL,
+        &["boundary.bottom={ friction_coefficient = 0.5, separates = false }", "strength_reduction.factor=1.0"],
+    );
     assert_eq!(held.contacts[1][0].map(|contact| (contact.friction, contact.lifts)), Some((0.5, false)));
 }
 
 /// Strength that falls: its last values, the strain of a band in cells of one size, and what is doubtful or refused.
 #[test]
 fn softening_strengths() {
-    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"mohr-coulomb-softening\", friction = 30, \
-                cohesion = 1e3, residual_friction = 25";
+    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"mohr-coulomb-softening\", friction_angle = 30, \
+                cohesion = 1e3, residual_friction_angle = 25";
     let with = |text: &str| set(FULL, &["grid.cell=0.5", &format!("material.clay={{ {keys}, {text} }}")]);
     let case = with("residual_cohesion = 0, softening_strain = 0.2").expect("a valid case");
     let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else { panic!() };
@@ -68,9 +71,12 @@ fn softening_strengths() {
     for (text, told) in [
         ("softening_strain = 0.2", "needs it"),
         ("residual_cohesion = 0, softening_strain = 0", "allowed: softening_strain > 0"),
-        ("residual_cohesion = 0, softening_strain = 0.2, residual_dilation = 26", "0 <= residual_dilation <= "),
+        (
+            "residual_cohesion = 0, softening_strain = 0.2, residual_dilation_angle = 26",
+            "0 <= residual_dilation_angle <= ",
+        ),
         ("residual_cohesion = 0, softening_strain = 0.2, softening = \"quadratic\"", "exponential"),
-        ("residual_cohesion = 0, softening_strain = 0.2, separation = \"closing\"", "has no meaning"),
+        ("residual_cohesion = 0, softening_strain = 0.2, separation = \"gap\"", "has no meaning"),
     ] {
         let message = format!("{:?}", with(text).expect_err(text));
         assert!(message.contains(told), "{message}");
@@ -98,7 +104,7 @@ fn band_widths_are_warned_of_where_they_were_not_measured() {
         (with("modified-f-bar", &[]), "that of 1.3, -35 %"),
         (with("none", &[]), "that of 3.0, +50 %"),
         (with("f-bar-zhao", &[]), "it never was"),
-        (with("f-bar", &["grid.order=linear"]), "that of 2.25, +12 %"),
+        (with("f-bar", &["grid.degree=linear"]), "that of 2.25, +12 %"),
         (with("f-bar", &["footing={ from = [0.5, 1], to = [1, 1], displacement = [0, -0.1] }"]), "under a strip"),
         (told(ROUND, &["grid.cell=0.25", "stabilisation.method=f-bar"]), "in \"axisymmetric\" it never was"),
     ] {
@@ -125,10 +131,10 @@ fn layers_by_height_and_reduced_strength() {
     assert_eq!(case.materials[3].material.elastic().young, 1.3e7, "stiffest at the lowest place of a body, y = 1.5");
     assert!(!matches!(case.materials[0].material, Material::Graded(_)));
     let note = |case: &Case, name: &str| case.notes.iter().find(|note| note.key == name).unwrap().value.clone();
-    assert!(note(&case, "material.clay").ends_with("dilation = 0.000000 deg, cohesion = 16000.000000 Pa"));
+    assert!(note(&case, "material.clay").ends_with("dilation_angle = 0.000000 deg, cohesion = 16000.000000 Pa"));
     let till = note(&case, "material.till");
     assert!(
-        till.contains("cohesion = 1400.000000 Pa at y = 1.5; friction = ") && till.ends_with("at y = 2.5"),
+        till.contains("cohesion = 1400.000000 Pa at y = 1.5; friction_angle = ") && till.ends_with("at y = 2.5"),
         "{till}"
     );
     let case = valid(FULL, &["strength_reduction.factor=1.4"]);
@@ -146,7 +152,7 @@ fn layers_by_height_and_reduced_strength() {
 /// What a search for the factor of safety takes as its reference: the same stiffness, and no strength.
 #[test]
 fn strength_that_falls_in_a_stage_takes_the_friction_of_rigid_bodies_and_strips_with_it() {
-    let base = "footing.base={ friction = 0.5 }";
+    let base = "footing.interface={ friction_coefficient = 0.5 }";
     let case = valid(FULL, &[base, "stage.0.strength_reduction=2.5"]);
     // Of the start, and from .25 s on.
     let friction = |t: f64| {
@@ -198,8 +204,8 @@ fn a_material_without_cohesion_may_close_its_gaps() {
     let separation = |case: &Case, material: usize| case.materials[material].material.separation();
     let case = valid(FULL, &[]);
     assert_eq!([0, 1, 2, 3].map(|material| separation(&case, material)), [Separation::Forgotten; 4]);
-    let sand = ["material.sand.cohesion=0", "material.sand.separation=closing"];
-    let till = ["material.till.cohesion=0", "material.till.separation=closing"];
+    let sand = ["material.sand.cohesion=0", "material.sand.separation=gap"];
+    let till = ["material.till.cohesion=0", "material.till.separation=gap"];
     let case = valid(FULL, &[sand, till].concat());
     assert_eq!(case.strength_reduction, Some(1.25));
     assert_eq!([0, 3].map(|material| separation(&case, material)), [Separation::Closing; 2]);
@@ -209,8 +215,8 @@ fn a_material_without_cohesion_may_close_its_gaps() {
 /// Modified Cam-clay: its numbers, by the height too, where its linear moduli hold, and what it needs to begin with.
 #[test]
 fn cam_clay_and_its_start() {
-    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"modified-cam-clay\", kappa = 0.02, lambda = 0.1, \
-                critical_ratio = 1.2";
+    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"modified-cam-clay\", kappa_star = 0.02, lambda_star = 0.1, \
+                critical_state_ratio = 1.2";
     let whole = ["strength_reduction.factor=1.0", "initial.k0=0.5"];
     let with = |text: &str| set(FULL, &[&whole[..], &[&format!("material.clay={{ {keys}, {text} }}")]].concat());
     let case = with("ocr = 2").expect("a valid case");
@@ -239,15 +245,15 @@ fn cam_clay_and_its_start() {
         let message = format!("{:?}", set(&text, &[&[clay.as_str()], sets].concat()).expect_err("refused"));
         assert!(message.contains(told), "{sets:?}: {message}");
     };
-    refused(&["material.clay.lambda=0.02"], "lambda > kappa = 0.02");
+    refused(&["material.clay.lambda_star=0.02"], "lambda_star > kappa_star = 0.02");
     refused(&["initial.gravity=elastic"], "no state without stress: give [initial] k0");
     refused(&["strength_reduction.factor=1.25"], "would grow as its strength falls; give preconsolidation");
     refused(&["strength_reduction.unloaded=true"], "no state without stress: give [initial] k0");
     // Under the weight of others, but with none of its own.
-    let weightless = "material.soil={ young = 1e7, poisson = 0.3, model = \"modified-cam-clay\", kappa = 0.02, \
-                      lambda = 0.1, critical_ratio = 1.2, ocr = 2 }";
+    let weightless = "material.soil={ young = 1e7, poisson = 0.3, model = \"modified-cam-clay\", kappa_star = 0.02, \
+                      lambda_star = 0.1, critical_state_ratio = 1.2, ocr = 2 }";
     let (weight, start) = ("gravity.acceleration=[0.0, -9.81]", "initial.k0=0.5");
-    let fill = "material.fill={ model = \"hencky\", young = 1e7, poisson = 0.3, density = 2e3 }";
+    let fill = "material.fill={ model = \"elastic\", young = 1e7, poisson = 0.3, density = 2e3 }";
     let body = "body.1={ material = \"fill\", box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }, points_per_cell = 3 }";
     let message = format!("{:?}", set(STATIC, &[weightless, fill, body, weight, start]).expect_err("no pressure"));
     assert!(message.contains("without weight material.soil has no pressure"), "{message}");
@@ -269,12 +275,12 @@ fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate() {
     for (text, told) in [
         ("rate_parameter = 0.1", "missing; a rate needs both"),
         ("sensitivity = 0.5", "duplicate key"),
-        ("friction = 10", "has no meaning"),
+        ("friction_angle = 10", "has no meaning"),
     ] {
         let message = format!("{:?}", with(text).expect_err("refused"));
         assert!(message.contains(told), "{text}: {message}");
     }
-    let (clay, time) = (format!("material.soil={{ {keys}, {rate} }}"), "analysis.type=quasi-static-in-time");
+    let (clay, time) = (format!("material.soil={{ {keys}, {rate} }}"), "analysis.type=quasi-static-rate");
     let case = set(STATIC, &[&clay, time]).expect("in real time");
     assert!(!case.analysis.kind.is_timeless() && case.analysis.regime == Regime::QuasiStatic);
 }

@@ -6,8 +6,8 @@ use super::*;
 #[test]
 fn a_free_body_at_the_edge_of_the_grid_is_warned_of() {
     let head = "geometry = \"plane-strain\"\nanalysis = { type = \"dynamic\", end = 0.2, dt = 0.01 }\n\
-                grid = { lower = [0, 0], upper = [3, 3], cell = 0.25, order = \"quadratic\" }\n\
-                [boundary]\nbottom = \"free\"\n[material.m]\nmodel = \"hencky\"\nyoung = 1e9\npoisson = 0.3\ndensity = \
+                grid = { lower = [0, 0], upper = [3, 3], cell = 0.25, degree = \"quadratic\" }\n\
+                [boundary]\nbottom = \"free\"\n[material.m]\nmodel = \"elastic\"\nyoung = 1e9\npoisson = 0.3\ndensity = \
                 1000\n";
     let warned = |x: f64, motion: &str, set: &[&str]| -> Vec<String> {
         let body = format!(
@@ -41,7 +41,7 @@ fn a_free_body_at_the_edge_of_the_grid_is_warned_of() {
         let disc = format!(
             "{head}[[body]]\nmaterial = \"m\"\npoints_per_cell = 2\nbox = {{ lower = [0.0, 0.0], upper = [3.0, 1.0] \
              }}\n\
-             [[rigid]]\nname = \"disc\"\ncircle = {{ center = [0.5, 1.5], radius = 0.5 }}\ndensity = 1000\n\
+             [[rigid]]\nname = \"disc\"\ncircle = {{ centre = [0.5, 1.5], radius = 0.5 }}\ndensity = 1000\n\
              free = [\"x\", \"y\", \"rotation\"]\nstart_velocity = [{velocity}, 0.0]\n"
         );
         let warnings = valid(&disc, &["boundary.bottom=fixed"]).warnings;
@@ -55,8 +55,8 @@ fn a_free_body_at_the_edge_of_the_grid_is_warned_of() {
 #[test]
 fn a_rotation_by_velocities_is_warned_of_like_a_spin() {
     let head = "geometry = \"plane-strain\"\nanalysis = { type = \"dynamic\", end = 1, dt = 0.1 }\n\
-                grid = { lower = [0, 0], upper = [8, 8], cell = 0.5, order = \"quadratic\" }\n\
-                [boundary]\nbottom = \"fixed\"\n[material.m]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\ndensity \
+                grid = { lower = [0, 0], upper = [8, 8], cell = 0.5, degree = \"quadratic\" }\n\
+                [boundary]\nbottom = \"fixed\"\n[material.m]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\ndensity \
                 = 2000\n";
     let rotates = |velocity: &dyn Fn(f64, f64) -> [f64; 2], distance: f64| {
         let body = |k: u32| {

@@ -85,8 +85,8 @@ mod tests {
         let of = |geometry: &str, corner: &str, grid: &str, made: &str| {
             let text = format!(
                 "geometry = \"{geometry}\"\nanalysis = {{ type = \"quasi-static\", steps = 1 }}\n\
-                 grid = {{ {grid}, order = \"quadratic\" }}\n\
-                 material.soil = {{ model = \"hencky\", young = 1e6, poisson = 0.3 }}\nboundary.bottom = \"fixed\"\n\
+                 grid = {{ {grid}, degree = \"quadratic\" }}\n\
+                 material.soil = {{ model = \"elastic\", young = 1e6, poisson = 0.3 }}\nboundary.bottom = \"fixed\"\n\
                  body = [{{ material = \"soil\", box = {{ lower = [{corner}], upper = [{made}] }}, points_per_cell = 2 }}]\n"
             );
             RunOrder::cell_of(&Case::from_text("case.toml", &text, &[]).expect("a valid case"))

@@ -23,7 +23,9 @@ const MARGIN: f64 = 600.0;
 pub(crate) fn sizes(frame: &Frame, geometry: &str) -> Vec<f64> {
     match frame.real("volume", 1) {
         Some(volumes) if geometry == "plane-strain" => volumes.iter().map(|volume| volume.abs().sqrt()).collect(),
-        Some(volumes) if geometry == "solid" => volumes.iter().map(|volume| volume.abs().cbrt()).collect(),
+        Some(volumes) if ["3d", "solid"].contains(&geometry) => {
+            volumes.iter().map(|volume| volume.abs().cbrt()).collect()
+        }
         Some(volumes) if geometry == "axisymmetric" => {
             let area = |(volume, x): (&f64, &[f64; 3])| if x[0] > 0.0 { volume.abs() / x[0] } else { 0.0 };
             volumes.iter().zip(&frame.position).map(area).map(f64::sqrt).collect()

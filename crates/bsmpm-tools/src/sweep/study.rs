@@ -183,8 +183,8 @@ pub(super) mod tests {
         assert!(there[0].order.is_err() && there[2].order.is_ok());
         let besides = points(&["grid.cell=5 mm"], false, &[]).unwrap();
         assert_eq!(names(&besides), ["cell 5 mm", "cell 10 mm"]);
-        let other = points(&["grid.cell=5 mm"], false, &["grid.cell=5 mm", "grid.order=cubic"]).unwrap();
-        assert_eq!(names(&other), ["cell 5 mm", "cell 5 mm, grid.order=cubic"]);
+        let other = points(&["grid.cell=5 mm"], false, &["grid.cell=5 mm", "grid.degree=cubic"]).unwrap();
+        assert_eq!(names(&other), ["cell 5 mm", "cell 5 mm, grid.degree=cubic"]);
         assert!(points(&["grid.cell=5 mm"], false, &["grid.cell=20 mm"]).is_err());
     }
 

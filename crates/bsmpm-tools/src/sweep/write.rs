@@ -33,6 +33,7 @@ fn in_table(
     value: &Value,
 ) -> Result<(), String> {
     let (name, rest) = parts.split_first().ok_or("no key")?;
+    let name = schema.map_or(*name, |schema| name_in(table, schema, name));
     if let Some(schema) = schema {
         schema.rivals(name).for_each(|rival| _ = table.remove(rival));
     }
@@ -55,6 +56,13 @@ fn in_table(
         (Some(Kind::Named(below)), Some(named)) => in_named(named, below, rest, value),
         _ => in_item(item, kind.and_then(Kind::table), rest, value),
     }
+}
+
+/// The name that a table has of a key, which may be an earlier one; that of now if it does not have the key.
+fn name_in<'a>(table: &dyn TableLike, schema: &'static Schema, name: &'a str) -> &'a str {
+    let Some(key) = schema.key(name).or_else(|| schema.renamed(name)) else { return name };
+    let earlier = key.earlier.iter().find(|earlier| table.contains_key(earlier));
+    earlier.copied().unwrap_or(key.name)
 }
 
 /// In a table whose keys are names of the author's choice.
@@ -144,7 +152,20 @@ mod tests {
         let case = Case::from_text("case.toml", COLUMN, &set).unwrap();
         assert_eq!(differences(&case.text, &written).unwrap(), [], "{written}");
         assert!(written.contains("# The coarse form of") && written.contains("# the paper's: \"modified-f-bar\""));
-        assert!(written.contains("cell  = \"5 mm\"\norder") && !written.contains("dt "), "{written}");
+        assert!(written.contains("cell   = \"5 mm\"\ndegree") && !written.contains("dt "), "{written}");
+    }
+
+    #[test]
+    fn earlier_names_are_set_where_they_stand() {
+        let earlier = COLUMN.replace("friction_angle = 21.9", "friction = 21.9");
+        assert_ne!(earlier, COLUMN);
+        for text_of_case in [COLUMN, &earlier] {
+            for set in ["material.rods.friction=25", "material.rods.friction_angle=25"] {
+                let written = text(text_of_case, &[set.to_owned()]).unwrap();
+                assert!(Case::from_text("case.toml", &written, &[]).is_ok(), "{set}: {written}");
+                assert!(written.contains("= 25") && !written.contains("21.9"), "{set}: {written}");
+            }
+        }
     }
 
     #[test]

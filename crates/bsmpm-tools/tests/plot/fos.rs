@@ -293,7 +293,7 @@ fn weight_that_comes_at_once_and_soft_soil_are_mended_and_told() {
 }
 
 const CLAY: &str = "material.soil={ model = \"modified-cam-clay\", young = 1e7, poisson = 0.3, density = 2e3, \
-                    kappa = 0.02, lambda = 0.12, critical_ratio = 1.0, preconsolidation = 2e5 }";
+                    kappa_star = 0.02, lambda_star = 0.12, critical_state_ratio = 1.0, preconsolidation = 2e5 }";
 
 /// Only what is there when the strength falls has strength that matters; what softens has its own stiffness, and a band
 /// only.
@@ -308,8 +308,8 @@ fn what_is_not_there_does_not_matter_and_what_softens_has_a_band() {
     };
     let softening = |young: f64, last: f64| {
         format!(
-            "{{ model = \"mohr-coulomb-softening\", young = {young:e}, poisson = 0.3, density = 2e3, friction = 30, \
-             cohesion = 1e4, residual_friction = {last}, residual_cohesion = 0, softening_strain = 0.1 }}"
+            "{{ model = \"mohr-coulomb-softening\", young = {young:e}, poisson = 0.3, density = 2e3, friction_angle = 30, \
+             cohesion = 1e4, residual_friction_angle = {last}, residual_cohesion = 0, softening_strain = 0.1 }}"
         )
     };
     let spare = of(&[&format!("material.spare={}", softening(1e7, 20.0))], &[]);
@@ -332,12 +332,12 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
         (vec!["solver.force_tolerance=1e-2"], "solver.force_tolerance = 1e-2 is too loose"),
         (vec!["analysis.type=dynamic"], "needs a quasi-static analysis"),
         (
-            vec!["material.soil={ model = \"hencky\", young = 1e8, poisson = 0.3, density = 2e3 }"],
+            vec!["material.soil={ model = \"elastic\", young = 1e8, poisson = 0.3, density = 2e3 }"],
             "no material is plastic",
         ),
         (
             vec![
-                "analysis.type=quasi-static-in-time",
+                "analysis.type=quasi-static-rate",
                 "material.soil={ model = \"sensitive-clay\", young = 1e8, poisson = 0.49, density = 2e3, cohesion = 5e4, \
                   sensitivity = 4, softening_strain = 10, rate_parameter = 0.1, reference_rate = 1e-4 }",
             ],
@@ -347,7 +347,7 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
         (
             vec![
                 "material.soil={ model = \"mohr-coulomb-softening\", young = 1e8, poisson = 0.3, density = 2e3, cohesion = 1e4, \
-                  friction = 25, residual_friction = 35, residual_cohesion = 1e4, softening_strain = 0.1 }",
+                  friction_angle = 25, residual_friction_angle = 35, residual_cohesion = 1e4, softening_strain = 0.1 }",
             ],
             "a material hardens",
         ),

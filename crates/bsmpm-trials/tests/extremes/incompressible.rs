@@ -107,8 +107,8 @@ pub fn bending(poisson: f64, method: &'static str) -> Found {
         let young = 1e8 * (1.0 - poisson * poisson);
         let text = format!(
             "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nsteps = 1\n\
-             [grid]\nlower = [0.0, 0.0]\nupper = [8.5, 2.0]\ncell = 0.25\norder = \"quadratic\"\n\
-             [material.beam]\nmodel = \"hencky\"\nyoung = {young}\npoisson = {poisson}\n\
+             [grid]\nlower = [0.0, 0.0]\nupper = [8.5, 2.0]\ncell = 0.25\ndegree = \"quadratic\"\n\
+             [material.beam]\nmodel = \"elastic\"\nyoung = {young}\npoisson = {poisson}\n\
              [[body]]\nmaterial = \"beam\"\nbox = {{ lower = [0.0, 0.5], upper = [8.0, 1.5] }}\npoints_per_cell = 3\n\
              [boundary]\nleft = \"fixed\"\n[stabilisation]\nmethod = \"{method}\"\n\
              [solver]\nbackground = 1e-6\nmax_iterations = 1000\n[output]\ntimes = [1.0]\n\

@@ -15,8 +15,8 @@ pub fn stretched(per_cell: usize, stretch: f64) -> Found {
     let (pull, end) = (10.0 * (stretch - 1.0), 10.0 * stretch + 2.0);
     let text = format!(
         "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nsteps = 100\n\
-         [grid]\nlower = [0.0, 0.0]\nupper = [{end}, 1.0]\ncell = 1.0\norder = \"quadratic\"\n\
-         [material.bar]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.0\n\
+         [grid]\nlower = [0.0, 0.0]\nupper = [{end}, 1.0]\ncell = 1.0\ndegree = \"quadratic\"\n\
+         [material.bar]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.0\n\
          [[body]]\nmaterial = \"bar\"\nbox = {{ lower = [0.0, 0.0], upper = [10.0, 1.0] }}\npoints_per_cell = {per_cell}\n\
          [boundary]\nleft = \"roller\"\nbottom = \"roller\"\ntop = \"roller\"\n[stabilisation]\nmethod = \"none\"\n\
          [[prescribed]]\nfrom = [10.0, 0.0]\nto = [10.0, 1.0]\ndisplacement = [{pull}, 0.0]\n\

@@ -65,10 +65,10 @@ impl Collapse {
         let acceleration = -9.81 * units.length / (units.time * units.time);
         // The program takes density = unit_weight / 9.81 m/s2.
         let weight = 20.4e3 * units.mass / units.length.powi(3);
-        let strength = format!("friction = {}\ncohesion = {}", soil.friction, soil.cohesion * units.stress());
+        let strength = format!("friction_angle = {}\ncohesion = {}", soil.friction, soil.cohesion * units.stress());
         format!(
             "geometry = \"plane-strain\"\n[analysis]\ntype = \"dynamic\"\nend = {}\ndt = {}\n\
-             [grid]\nlower = [{zero}, {zero}]\nupper = [{end}, {top}]\ncell = {}\norder = \"quadratic\"\n\
+             [grid]\nlower = [{zero}, {zero}]\nupper = [{end}, {top}]\ncell = {}\ndegree = \"quadratic\"\n\
              [material.rods]\nmodel = \"mohr-coulomb\"\nyoung = {}\npoisson = {}\n{strength}\nunit_weight = {weight}\n\
              [[body]]\nmaterial = \"rods\"\nbox = {{ lower = [{left}, {zero}], upper = [{right}, {}] }}\n\
              points_per_cell = {per_cell}\n[gravity]\nacceleration = [0.0, {acceleration}]\n\
@@ -114,11 +114,11 @@ impl Footing {
         let (depth, cell) = (self.depth * units.length, 0.5 * units.length);
         format!(
             "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nsteps = {}\n\
-             [grid]\nlower = [{zero}, {zero}]\nupper = [{five}, {top}]\ncell = {cell}\norder = \"quadratic\"\n\
+             [grid]\nlower = [{zero}, {zero}]\nupper = [{five}, {top}]\ncell = {cell}\ndegree = \"quadratic\"\n\
              [material.clay]\nmodel = \"tresca\"\nyoung = {}\npoisson = {poisson}\ncohesion = {}\n\
              [[body]]\nmaterial = \"clay\"\nbox = {{ lower = [{zero}, {zero}], upper = [{five}, {five}] }}\n\
              points_per_cell = {per_cell}\n[footing]\nfrom = [{zero}, {five}]\nto = [{one}, {five}]\n\
-             displacement = [0.0, -{depth}]\nbase = \"smooth\"\n\
+             displacement = [0.0, -{depth}]\ninterface = \"smooth\"\n\
              [boundary]\nbottom = \"fixed\"\nleft = \"roller\"\nright = \"roller\"\n\
              [stabilisation]\nmethod = \"{method}\"\n[solver]\nbackground = 1e-3\nmax_iterations = 1000\n{}\n\
              [output]\ntimes = [1.0]\n[[history]]\nquantity = \"footing-pressure\"\nname = \"pressure\"\n\
@@ -143,7 +143,7 @@ pub fn layers(layers: &[(f64, f64, f64)], further: &str, steps: usize, accelerat
     for (number, (young, density, height)) in layers.iter().enumerate() {
         let top = base + height;
         materials += &format!(
-            "[material.layer{number}]\nmodel = \"hencky\"\nyoung = {young}\npoisson = 0.3\ndensity = {density}\n\
+            "[material.layer{number}]\nmodel = \"elastic\"\nyoung = {young}\npoisson = 0.3\ndensity = {density}\n\
              [[body]]\nmaterial = \"layer{number}\"\nbox = {{ lower = [0.0, {base:?}], upper = [2.0, {top:?}] }}\n\
              points_per_cell = 3\n"
         );
@@ -151,7 +151,7 @@ pub fn layers(layers: &[(f64, f64, f64)], further: &str, steps: usize, accelerat
     }
     format!(
         "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nsteps = {steps}\n\
-         [grid]\nlower = [0.0, 0.0]\nupper = [2.0, {:?}]\ncell = 1.0\norder = \"quadratic\"\n{materials}\
+         [grid]\nlower = [0.0, 0.0]\nupper = [2.0, {:?}]\ncell = 1.0\ndegree = \"quadratic\"\n{materials}\
          [gravity]\nacceleration = [0.0, {}]\nramp = 1.0\n\
          [boundary]\nbottom = \"fixed\"\nleft = \"roller\"\nright = \"roller\"\n[output]\ntimes = [1.0]\n\
          [[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n[[history]]\nquantity = \"max-displacement\"\n{further}",
@@ -165,8 +165,8 @@ pub fn block(velocity: [f64; 2], steps: usize, further: &str) -> String {
     let [x, y] = velocity;
     format!(
         "geometry = \"plane-strain\"\n[analysis]\ntype = \"dynamic\"\nend = {:?}\nsteps = {steps}\n\
-         [grid]\nlower = [0.0, 0.0]\nupper = [30.0, 4.0]\ncell = 0.5\norder = \"quadratic\"\n\
-         [material.rubber]\nmodel = \"hencky\"\nyoung = 1e5\npoisson = 0.3\ndensity = 1000.0\n\
+         [grid]\nlower = [0.0, 0.0]\nupper = [30.0, 4.0]\ncell = 0.5\ndegree = \"quadratic\"\n\
+         [material.rubber]\nmodel = \"elastic\"\nyoung = 1e5\npoisson = 0.3\ndensity = 1000.0\n\
          [[body]]\nmaterial = \"rubber\"\nbox = {{ lower = [1.0, 0.5], upper = [3.5, 3.0] }}\npoints_per_cell = 2\n\
          velocity = [{x:e}, {y:e}]\n{further}\
          [output]\nevery_steps = {steps}\n[[history]]\nquantity = \"mass\"\n[[history]]\nquantity = \"momentum\"\n\

@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 /// A cohesionless column between smooth walls under its weight: error of the reaction of its base.
 pub fn resting(poisson: f64) -> Found {
-    let law = format!("model = \"mohr-coulomb\"\nfriction = 30.0\ncohesion = 0.0\npoisson = {poisson}");
-    let text = layers(&[(1e7, 2e3, 8.0)], "", 5, 9.81).replace("model = \"hencky\"", &law);
+    let law = format!("model = \"mohr-coulomb\"\nfriction_angle = 30.0\ncohesion = 0.0\npoisson = {poisson}");
+    let text = layers(&[(1e7, 2e3, 8.0)], "", 5, 9.81).replace("model = \"elastic\"", &law);
     let text = text.replacen("poisson = 0.3\n", "", 1);
     let weight = 2e3 * 9.81 * 16.0;
     let run = Run::of(&text, 1, &[]);

@@ -146,7 +146,7 @@ const BOUND: [(&str, &str); 9] = [
     ("material.clay.poisson=0.31", "material.clay.poisson was 0.3, and is 0.31"),
     ("material.clay.cohesion=\"6 kPa\"", "material.clay.cohesion was 5000.0, and is 6000.0"),
     ("grid.cell=\"0.2 m\"", "grid.cell was [0.1], and is [0.2]"),
-    ("grid.order=\"cubic\"", "grid.order was \"quadratic\", and is \"cubic\""),
+    ("grid.degree=\"cubic\"", "grid.degree was \"quadratic\", and is \"cubic\""),
     ("body.0.points_per_cell=3", "body.0.points_per_cell was 2, and is 3"),
     ("body.1.velocity=[21.0,0.0]", "body.1.velocity was [22.0, 0.0], and is [21.0, 0.0]"),
     (

@@ -16,13 +16,13 @@ dt = 0.002
 lower = [0, 0]
 upper = [1.5, 1.5]
 cell = 0.125
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
 model = "drucker-prager"
 young = "2 MPa"
 poisson = 0.3
 density = 1800
-friction = 30
+friction_angle = 30
 cohesion = "1 kPa"
 [[body]]
 material = "soil"
@@ -31,7 +31,7 @@ points_per_cell = 2
 [[rigid]]
 name = "cone"
 polygon = [[0.0, 1.0], [0.4, 1.2], [0.4, 1.4], [-0.4, 1.4], [-0.4, 1.2]]
-friction = 0.3
+friction_coefficient = 0.3
 displacement = [0.0, -0.06]
 [[traction]]
 from = [0.75, 1.0]
@@ -100,12 +100,13 @@ fn a_body_of_revolution_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
 #[test]
 fn forces_and_works_of_a_disc_are_of_the_whole_of_it() {
     let pressed = changed(CASE, "type = \"dynamic\"\nend = 0.06\ndt = 0.002", "type = \"quasi-static\"\nsteps = 4");
-    let pressed = changed(&pressed, "model = \"drucker-prager\"", "model = \"hencky\"");
-    let pressed = changed(&pressed, "friction = 30\ncohesion = \"1 kPa\"\n", "");
+    let pressed = changed(&pressed, "model = \"drucker-prager\"", "model = \"elastic\"");
+    let pressed = changed(&pressed, "friction_angle = 30\ncohesion = \"1 kPa\"\n", "");
     let (before, _) = pressed.split_once("[[rigid]]").unwrap();
     let (_, after) = pressed.split_once("[boundary]").unwrap();
     let (after, _) = after.split_once("[output]").unwrap();
-    let footing = "[footing]\nfrom = [0.0, 1.0]\nto = [0.5, 1.0]\ndisplacement = [0.0, -0.001]\nbase = \"smooth\"\n";
+    let footing =
+        "[footing]\nfrom = [0.0, 1.0]\nto = [0.5, 1.0]\ndisplacement = [0.0, -0.001]\ninterface = \"smooth\"\n";
     let wanted =
         ["footing-force", "footing-pressure", "energy"].map(|name| format!("[[history]]\nquantity = \"{name}\"\n"));
     let base = "[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n";
@@ -125,8 +126,8 @@ fn forces_and_works_of_a_disc_are_of_the_whole_of_it() {
 /// whole circle.
 #[test]
 fn a_free_piston_falls_on_a_round_column_as_on_a_plane_one() {
-    let elastic = changed(CASE, "model = \"drucker-prager\"", "model = \"hencky\"");
-    let elastic = changed(&elastic, "friction = 30\ncohesion = \"1 kPa\"\n", "");
+    let elastic = changed(CASE, "model = \"drucker-prager\"", "model = \"elastic\"");
+    let elastic = changed(&elastic, "friction_angle = 30\ncohesion = \"1 kPa\"\n", "");
     let elastic = changed(&changed(&elastic, "upper = [1.5, 1.5]", "upper = [1.0, 1.5]"), "\"free\"", "\"roller\"");
     // The exponents of F-bar differ, 1/3 here, 1/2 in a plane, and points do not integrate hoop stress exactly.
     let elastic = changed(&elastic, "\"consistent-f-bar\"", "\"none\"");
@@ -158,8 +159,8 @@ fn undrained_ground_stays_even_at_the_axis() {
     let case = r#"
 geometry = "axisymmetric"
 analysis = { type = "consolidation", end = "10 s", steps = 1 }
-grid = { lower = [0, 0], upper = [3, 2.5], cell = 0.25, order = "quadratic" }
-material.soil = { model = "hencky", young = "10 MPa", poisson = 0.3, drainage = "undrained", porosity = 0.5 }
+grid = { lower = [0, 0], upper = [3, 2.5], cell = 0.25, degree = "quadratic" }
+material.soil = { model = "elastic", young = "10 MPa", poisson = 0.3, drainage = "undrained", porosity = 0.5 }
 body = [{ material = "soil", box = { lower = [0, 0], upper = [3, 2] }, points_per_cell = 3 }]
 traction = [{ from = [0, 2], to = [3, 2], stress = [0, "-50 kPa"] }]
 boundary = { left = "roller", right = "roller", bottom = "roller" }

@@ -20,8 +20,8 @@ model = "mohr-coulomb"
 young = "1 GPa"
 poisson = 0.3
 cohesion = 0.0
-friction = 30.0
-dilation = 30.0
+friction_angle = 30.0
+dilation_angle = 30.0
 unit_weight = "20 kN/m3"
 [[body]]
 material = "sand"
@@ -30,7 +30,7 @@ box = { lower = [0.0, 0.0], upper = [10.0, 4.0] }
 from = [0.0, 4.0]
 to = [1.0, 4.0]
 displacement = [0.0, -0.01]
-base = "smooth"
+interface = "smooth"
 "#;
 
 /// An indicator of a run, and how far it moved the ground, m.
@@ -93,8 +93,8 @@ fn works_that_cancel_do_not_make_the_background_seem_large() {
 #[test]
 fn a_footing_on_sand_that_finds_no_equilibrium_names_the_cohesion() {
     let scratch = Scratch::with_case(SAND);
-    let steep = ["case.toml", "--set", "material.sand.friction=40", "--set", "material.sand.dilation=10"];
-    let rough = ["--set", "footing.base=rough"];
+    let steep = ["case.toml", "--set", "material.sand.friction_angle=40", "--set", "material.sand.dilation_angle=10"];
+    let rough = ["--set", "footing.interface=rough"];
     let failed = scratch.direct(&[&steep[..], &rough].concat()).expect(80);
     failed.says_once("; try: analysis.purpose = \"limit-load\"");
     failed.says_once("material.sand has no cohesion");

@@ -19,9 +19,9 @@ growth = 1.04
 lower = [0, 0]
 upper = [0.4, 1.0]
 cell = [0.1, 0.05]
-order = "quadratic"
+degree = "quadratic"
 [material.clay]
-model = "hencky"
+model = "elastic"
 young = "1 MPa"
 poisson = 0.0
 drainage = "coupled"

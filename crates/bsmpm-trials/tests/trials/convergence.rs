@@ -14,14 +14,14 @@ steps = 40
 lower = [0.0, 0.0]
 upper = [6.5, 4.5]
 cell  = 0.5
-order = "quadratic"
+degree = "quadratic"
 [material.sand]
 model       = "mohr-coulomb"
 young       = "20 MPa"
 poisson     = 0.3
 cohesion    = "0 kPa"
-friction    = 30.0
-dilation    = 0.0
+friction_angle    = 30.0
+dilation_angle    = 0.0
 unit_weight = "18 kN/m3"
 [[body]]
 material = "sand"
@@ -57,17 +57,17 @@ steps = 1
 lower = [0.0, 0.0]
 upper = [48.0, 12.0]
 cell  = "1 m"
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
 model       = "mohr-coulomb"
 young       = "100 MPa"
 poisson     = 0.3
 cohesion    = "10 kPa"
-friction    = 20.0
-dilation    = 0.0
+friction_angle    = 20.0
+dilation_angle    = 0.0
 unit_weight = "20 kN/m3"
 [material.block]
-model       = "hencky"
+model       = "elastic"
 young       = "1e5 MPa"
 poisson     = 0.3
 density     = "2e3 kg/m3"

@@ -47,9 +47,9 @@ steps = 1
 lower = [0.0, 0.0]
 upper = [4.0, 1.0]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "100 MPa"
 poisson = 0.3
 density = 2000
@@ -96,7 +96,7 @@ fn a_cut_bar_under_uniform_pressure_has_uniform_stress() {
 
 /// A wedge in space whose inclined face and end cut cells.
 const WEDGE: &str = r#"
-geometry = "solid"
+geometry = "3d"
 analysis = { type = "quasi-static", steps = 6 }
 gravity = { acceleration = [0.0, 0.0, -9.81], ramp = 1.0 }
 boundary = { bottom = "fixed", left = "roller", right = "roller", front = "roller" }
@@ -104,14 +104,14 @@ boundary = { bottom = "fixed", left = "roller", right = "roller", front = "rolle
 lower = [0.0, 0.0, 0.0]
 upper = [40.0, 8.0, 12.0]
 cell = 2.0
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
 model = "mohr-coulomb"
 young = "100 MPa"
 poisson = 0.3
 cohesion = "60 kPa"
-friction = 20.0
-dilation = 0.0
+friction_angle = 20.0
+dilation_angle = 0.0
 unit_weight = "20 kN/m3"
 [[body]]
 material = "soil"
@@ -160,14 +160,14 @@ stabilisation = { method = "none" }
 lower = [0.0, 0.0]
 upper = [8.0, 4.5]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.sand]
 model = "mohr-coulomb"
 young = "10 GPa"
 poisson = 0.3
 cohesion = 0.0
-friction = 30.0
-dilation = 30.0
+friction_angle = 30.0
+dilation_angle = 30.0
 unit_weight = "20 kN/m3"
 [[body]]
 material = "sand"
@@ -177,7 +177,7 @@ points_per_cell = 2
 from = [0.0, 4.0]
 to = [1.0, 4.0]
 displacement = [0.0, -0.0005]
-base = "rough"
+interface = "rough"
 [[history]]
 quantity = "footing-pressure"
 name = "N"

@@ -47,7 +47,7 @@ fn history_names(history: &Columns) -> Vec<String> {
 
 #[test]
 fn the_collapse_closes_with_and_without_numerical_damping_on_1_and_2_ranks() {
-    for further in [&[][..], &["--set", "analysis.spectral_radius=0.8"], &["--set", "analysis.gamma=0.6"]] {
+    for further in [&[][..], &["--set", "analysis.spectral_radius=0.8"], &["--set", "analysis.newmark_gamma=0.6"]] {
         let histories = both("short/column_collapse.toml", "100", further);
         let (closure, spread) = closure(&histories);
         println!("{further:?}: closure {closure:.1e}, ranks differ by {spread:.1e}");

@@ -6,7 +6,7 @@ use crate::support::{Scratch, shipped};
 use bsmpm_io::manifest::Status;
 
 /// The short collapse with associated flow, in which F-bar makes energy from the start.
-const DILATANT: [&str; 4] = ["--set", "stabilisation.method=f-bar", "--set", "material.rods.dilation=21.9"];
+const DILATANT: [&str; 4] = ["--set", "stabilisation.method=f-bar", "--set", "material.rods.dilation_angle=21.9"];
 
 fn arguments<'a>(directory: &'a str, further: &[&'a str]) -> Vec<&'a str> {
     [&["case.toml", "-q", "-o", directory][..], &DILATANT, further].concat()

@@ -8,16 +8,16 @@ const BLOCK: &str = r#"
     geometry = "plane-strain"
     analysis = { type = "quasi-static", steps = 5 }
     gravity  = { acceleration = [4.3871653, -8.7743305], ramp = 1.0 }
-    grid     = { lower = [0, -0.25], upper = [3, 1], cell = "125 mm", order = "quadratic" }
+    grid     = { lower = [0, -0.25], upper = [3, 1], cell = "125 mm", degree = "quadratic" }
     body     = [{ material = "soil", box = { lower = [0.5, 0], upper = [1.5, 0.5] }, points_per_cell = 2 }]
-    rigid    = [{ name = "rock", polygon = [[-1, -1], [4, -1], [4, 0], [-1, 0]], friction = 0.75 }]
+    rigid    = [{ name = "rock", polygon = [[-1, -1], [4, -1], [4, 0], [-1, 0]], friction_coefficient = 0.75 }]
     [material.soil]
     model       = "mohr-coulomb"
     young       = "10 MPa"
     poisson     = 0.3
     cohesion    = "100 kPa"
-    friction    = 30.0
-    dilation    = 0.0
+    friction_angle    = 30.0
+    dilation_angle    = 0.0
     density     = 2000.0
 "#;
 
@@ -27,7 +27,7 @@ const SLOPE: &str = r#"
     analysis = { type = "quasi-static", end = 3, steps = 30 }
     gravity  = { acceleration = [0, -9.81], ramp = 1.0 }
     boundary = { bottom = "fixed", left = "roller", right = "contact" }
-    grid     = { lower = [0, 0], upper = [26, 12], cell = "1 m", order = "quadratic" }
+    grid     = { lower = [0, 0], upper = [26, 12], cell = "1 m", degree = "quadratic" }
     body     = [{ material = "soil", polygon = [[0, 0], [26, 0], [26, 3], [12, 10], [0, 10]], points_per_cell = 3 }]
     solver   = { max_iterations = 1000 }
     stabilisation = { method = "consistent-f-bar" }
@@ -36,8 +36,8 @@ const SLOPE: &str = r#"
     young       = "100 MPa"
     poisson     = 0.3
     cohesion    = "10 kPa"
-    friction    = 20.0
-    dilation    = 0.0
+    friction_angle    = 20.0
+    dilation_angle    = 0.0
     unit_weight = "20 kN/m3"
 "#;
 
@@ -63,10 +63,10 @@ fn a_block_on_rock_has_the_factor_of_its_friction_inclined_to_the_cells_or_not()
         "rigid.0.polygon=[[-0.5, 2.25], [-0.5, -0.5], [4.5, -0.5], [4.5, -0.25]]",
     ];
     let elastic = [
-        "material.soil={ model = \"hencky\", young = 1e7, poisson = 0.3, density = 2e3 }",
+        "material.soil={ model = \"elastic\", young = 1e7, poisson = 0.3, density = 2e3 }",
         "rigid=[]",
         "grid.lower=[0, 0]",
-        "boundary.bottom={ friction = 0.75 }",
+        "boundary.bottom={ friction_coefficient = 0.75 }",
     ];
     for set in [&[][..], &inclined, &elastic] {
         let found = found(BLOCK, ((1.2, 1.8), None), set);
@@ -83,7 +83,7 @@ const LAYER: &str = r#"
     analysis = { type = "quasi-static", steps = 10 }
     gravity  = { acceleration = [3.3552176056, -9.2183847172], ramp = 1.0 }
     boundary = { bottom = "fixed" }
-    grid     = { lower = [-1.0, 0.0], upper = [21.0, 2.5], cell = 0.5, order = "quadratic" }
+    grid     = { lower = [-1.0, 0.0], upper = [21.0, 2.5], cell = 0.5, degree = "quadratic" }
     body     = [{ material = "clay", box = { lower = [0, 0], upper = [20, 2] }, points_per_cell = 3 }]
     stabilisation = { method = "f-bar" }
     [material.clay]
@@ -112,8 +112,8 @@ fn a_layer_of_sensitive_clay_has_the_factor_of_its_peak_and_exchanged_clay_that_
     ];
     let tresca = "= { model = \"tresca\", young = 1e7, poisson = 0.3, cohesion = 8e3, density = 1800 }";
     let exchanged = [
-        "material.clay={ model = \"modified-cam-clay\", young = 5e6, poisson = 0.3, kappa = 0.002, lambda = 0.012, \
-         critical_ratio = 1.0, ocr = 1.5, density = 1800 }",
+        "material.clay={ model = \"modified-cam-clay\", young = 5e6, poisson = 0.3, kappa_star = 0.002, lambda_star = 0.012, \
+         critical_state_ratio = 1.0, ocr = 1.5, density = 1800 }",
         &format!("material.strength{tresca}"),
         "stage=[{ name = \"fails\", at = 1, materials = [{ from = \"clay\", to = \"strength\" }] }]",
         "gravity.ramp=0.0",
@@ -165,7 +165,7 @@ fn a_body_far_away_does_not_change_the_factor() {
         let still = ["analysis.end=1", "analysis.steps=10", "boundary.right=free", "grid.upper=[34, 12]"];
         estimate(&found(SLOPE, ((0.8, 1.2), None), &[&still, set].concat()))
     };
-    let far = "rigid=[{ name = \"far\", polygon = [[30, 6], [33, 6], [33, 9], [30, 9]], friction = 0.3 }]";
+    let far = "rigid=[{ name = \"far\", polygon = [[30, 6], [33, 6], [33, 9], [30, 9]], friction_coefficient = 0.3 }]";
     let (alone, beside) = (of(&[]), of(&[far]));
     assert!((beside / alone - 1.0).abs() < 5e-6, "{alone} {beside}");
 }
@@ -194,7 +194,7 @@ fn a_footing_that_carries_a_load_has_the_factor_of_prandtls_limit() {
 fn a_slope_has_the_factor_of_the_load_of_a_free_block_on_it() {
     let ground = ["analysis.end=1", "analysis.steps=10", "grid.upper=[40, 12]", "boundary.right=roller"];
     let slope = "body=[{ material = \"soil\", polygon = [[0, 0], [32, 0], [12, 10], [0, 10]], points_per_cell = 3 }]";
-    let block = "rigid=[{ name = \"block\", polygon = [[4, 10], [8, 10], [8, 12], [4, 12]], friction = 0.3, \
+    let block = "rigid=[{ name = \"block\", polygon = [[4, 10], [8, 10], [8, 12], [4, 12]], friction_coefficient = 0.3, \
                  free = [\"x\", \"y\", \"rotation\"], force = [0, -80e3] }]";
     let set = [&ground[..], &[slope, block, "history=[{ quantity = \"max-displacement\" }]"]].concat();
     let factor = estimate(&found(SLOPE, ((1.25, 1.45), None), &set));

@@ -163,7 +163,7 @@ fn a_slope_that_is_built_and_then_weakened_has_the_same_factor() {
 fn a_pit_has_the_factor_of_a_vertical_cut_and_then_no_more_than_blocks_allow() {
     let of = |cell: &str, stage: &str, range: (f64, f64)| {
         let dir = tempfile::tempdir().unwrap();
-        let grid = format!("grid={{ lower = [0, 0], upper = [32, 18], cell = {cell}, order = \"quadratic\" }}");
+        let grid = format!("grid={{ lower = [0, 0], upper = [32, 18], cell = {cell}, degree = \"quadratic\" }}");
         let plan = (range, 0.1, Some(stage));
         let (found, _) = of_stage(plan, "excavation.toml", &[&grid], 2, dir.path());
         let notes = found["notes"].to_string();
@@ -275,7 +275,7 @@ const CUT: &str = r#"
     analysis = { type = "quasi-static", steps = 10 }
     gravity  = { acceleration = [0.0, -9.81], ramp = 1.0 }
     boundary = { bottom = "fixed", left = "roller", right = "roller" }
-    grid     = { lower = [0.0, -2.0], upper = [10.0, 4.0], cell = 0.5, order = "quadratic" }
+    grid     = { lower = [0.0, -2.0], upper = [10.0, 4.0], cell = 0.5, degree = "quadratic" }
     body     = [{ material = "clay", polygon = [[0, -2], [10, -2], [10, 0], [4, 0], [3, 3.5], [0, 3.5]], points_per_cell = 3 }]
     stabilisation = { method = "consistent-f-bar" }
     [material.clay]
@@ -283,8 +283,8 @@ const CUT: &str = r#"
     young       = "10 MPa"
     poisson     = 0.3
     cohesion    = "25 kPa"
-    friction    = 0
-    dilation    = 0
+    friction_angle    = 0
+    dilation_angle    = 0
     unit_weight = "20 kN/m3"
 "#;
 

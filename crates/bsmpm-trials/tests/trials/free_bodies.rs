@@ -8,10 +8,10 @@ use crate::support::results::{at, history, manifest};
 const BLOCK: &str = r#"
 geometry = "plane-strain"
 analysis = { type = "quasi-static", steps = 4 }
-grid     = { lower = [-2.0, 0.0], upper = [3.0, 3.0], cell = 0.25, order = "quadratic" }
+grid     = { lower = [-2.0, 0.0], upper = [3.0, 3.0], cell = 0.25, degree = "quadratic" }
 boundary = { bottom = "fixed" }
 [material.soil]
-model   = "hencky"
+model   = "elastic"
 young   = "10 MPa"
 poisson = 0.45
 [[body]]
@@ -21,7 +21,7 @@ points_per_cell = 3
 [[rigid]]
 name = "block"
 polygon = [[-0.5, 1.0], [0.5, 1.0], [0.5, 2.0], [-0.5, 2.0]]
-friction = MU
+friction_coefficient = MU
 free = ["x", "y", "rotation"]
 force = [0.0, -20e3]
 ramp = 1.0
@@ -62,14 +62,17 @@ fn a_block_that_nothing_holds_is_named() {
     let scratch = Scratch::with_case(&changed(BLOCK, "MU", "0.0"));
     scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(80).says_once("nothing holds rigid body 0");
     scratch.write("case.toml", changed(&changed(BLOCK, "MU", "0.1"), "[0.0, -20e3]", "[3e3, -20e3]"));
-    scratch.mpirun(1, &["case.toml", "-q", "-o", "slides"]).expect(80).says_once("nothing holds rigid body 0");
+    scratch
+        .mpirun(1, &["case.toml", "-q", "-o", "slides"])
+        .expect(80)
+        .says_once("(friction_coefficient = 0.1) is used up");
 }
 
 /// A block of 36 kPa on sand and clay with weight, whose pressure spreads it.
 #[test]
 fn a_block_settles_on_plastic_ground_that_spreads() {
-    let soil = "model   = \"hencky\"\nyoung   = \"10 MPa\"\npoisson = 0.45";
-    let plastic = "model = \"mohr-coulomb\"\nyoung = \"10 MPa\"\npoisson = 0.45\nfriction = 20\ndilation = 0\ncohesion = \"10 kPa\"\n\
+    let soil = "model   = \"elastic\"\nyoung   = \"10 MPa\"\npoisson = 0.45";
+    let plastic = "model = \"mohr-coulomb\"\nyoung = \"10 MPa\"\npoisson = 0.45\nfriction_angle = 20\ndilation_angle = 0\ncohesion = \"10 kPa\"\n\
                    unit_weight = \"18 kN/m3\"";
     let case = changed(&changed(BLOCK, soil, plastic), "MU", "0.1");
     let case = changed(&case, "-20e3", "-36e3") + "[gravity]\nacceleration = [0.0, -9.81]\nramp = 1.0\n";
@@ -84,11 +87,11 @@ fn a_block_settles_on_plastic_ground_that_spreads() {
 const COLUMN: &str = r#"
 geometry = "plane-strain"
 analysis = { type = "dynamic", end = 2.5, dt = 0.004 }
-grid     = { lower = [0.0, 0.0], upper = [0.4, 2.4], cell = 0.1, order = "quadratic" }
+grid     = { lower = [0.0, 0.0], upper = [0.4, 2.4], cell = 0.1, degree = "quadratic" }
 gravity  = { acceleration = [0.0, -1.0] }
 boundary = { bottom = "fixed", left = "roller", right = "roller" }
 [material.elastic]
-model   = "hencky"
+model   = "elastic"
 young   = 1.6e6
 poisson = 0.0
 density = 1000.0
@@ -142,10 +145,10 @@ fn a_mass_that_oscillates_goes_on_after_a_restart_to_the_bit() {
 const PISTONS: &str = r#"
 geometry = "plane-strain"
 analysis = { type = "quasi-static", steps = 10 }
-grid     = { lower = [0.0, 0.0], upper = [4.0, 3.0], cell = 0.25, order = "quadratic" }
+grid     = { lower = [0.0, 0.0], upper = [4.0, 3.0], cell = 0.25, degree = "quadratic" }
 boundary = { left = "roller", bottom = "fixed", right = "roller" }
 [material.soil]
-model   = "hencky"
+model   = "elastic"
 young   = "1 MPa"
 poisson = 0.3
 [[body]]
@@ -191,17 +194,17 @@ fn a_free_body_that_runs_into_another_one_ends_the_run() {
 const HEAP: &str = r#"
 geometry = "plane-strain"
 analysis = { type = "quasi-static", steps = 2 }
-grid     = { lower = [0.0, 0.0], upper = [8.0, 4.0], cell = 0.5, order = "quadratic" }
+grid     = { lower = [0.0, 0.0], upper = [8.0, 4.0], cell = 0.5, degree = "quadratic" }
 gravity  = { acceleration = [0.0, -9.81] }
 initial  = { k0 = 0.9, equilibrium = "plastic" }
-boundary = { bottom = { friction = 0.1 } }
+boundary = { bottom = { friction_coefficient = 0.1 } }
 [material.soil]
 model       = "mohr-coulomb"
 young       = "10 MPa"
 poisson     = 0.3
 cohesion    = "10 kPa"
-friction    = 25.0
-dilation    = 0.0
+friction_angle    = 25.0
+dilation_angle    = 0.0
 unit_weight = "18 kN/m3"
 [[body]]
 material = "soil"
@@ -243,17 +246,17 @@ fn the_buoyancy_that_a_rigid_body_lacks_is_warned_of() {
 fn strength_reduction_names_the_friction_that_it_divides() {
     let scratch = Scratch::with_case(&(changed(BLOCK, "MU", "0.5") + "[strength_reduction]\nfactor = 2.0\n"));
     let output = scratch.direct(&["case.toml", "--check"]).expect(0);
-    output.says_once("rigid.0.friction = 0.25 (strength_reduction.factor = 2)");
+    output.says_once("rigid.0.friction_coefficient = 0.25 (strength_reduction.factor = 2)");
     assert!(!output.stderr.contains("it does nothing") && !output.stdout.contains("it does nothing"));
 }
 
-/// Two blocks 0.4 m apart, one of which moves: the other one moves from 0.23 s on, as splines reach 1.5 cells of 0.1 m, and
-/// would be touched at 0.4 s.
+/// Two blocks 0.4 m apart, one of which moves: the other one moves from 0.23 s on, as splines reach 1.5 cells of 0.1 m,
+/// and would be touched at 0.4 s.
 const APPROACHING: &str = r#"
 geometry = "plane-strain"
 analysis = { type = "dynamic", end = 0.5, dt = 0.002 }
 grid = { lower = [0.0, 0.0], upper = [4.0, 4.0], cell = 0.1 }
-material.rubber = { model = "hencky", young = "1 MPa", poisson = 0.3, density = 1000 }
+material.rubber = { model = "elastic", young = "1 MPa", poisson = 0.3, density = 1000 }
 [[body]]
 material = "rubber"
 box = { lower = [1.0, 1.0], upper = [1.5, 1.5] }

@@ -16,9 +16,9 @@ dt = 0.005
 lower = [1, 2]
 upper = [9, 8]
 cell = 0.5
-order = "quadratic"
+degree = "quadratic"
 [material.stiff]
-model = "hencky"
+model = "elastic"
 young = "100 MPa"
 poisson = 0.25
 density = 2000
@@ -27,8 +27,8 @@ damping = { ratio = 0.02, frequency = 3 }
 model = "mohr-coulomb"
 young = "40 MPa"
 poisson = 0.3
-friction = 25
-dilation = 0
+friction_angle = 25
+dilation_angle = 0
 cohesion = "2 kPa"
 density = 1800
 [[body]]
@@ -89,7 +89,7 @@ fn ground_beside_a_free_field_is_the_same_on_any_number_of_ranks_and_over_restar
 const BUILT: &str = r#"
 geometry = "plane-strain"
 analysis = { type = "dynamic", end = 0.2, dt = 0.01 }
-grid = { lower = [0, 0], upper = [12, 6], cell = 1, order = "quadratic" }
+grid = { lower = [0, 0], upper = [12, 6], cell = 1, degree = "quadratic" }
 gravity = { acceleration = [0, -9.81] }
 initial = { k0 = 0.5 }
 boundary = { left = "free-field", right = "free-field", bottom = "absorbing" }
@@ -100,8 +100,8 @@ stabilisation = { method = "consistent-f-bar" }
 model = "mohr-coulomb"
 young = "40 MPa"
 poisson = 0.3
-friction = 25
-dilation = 0
+friction_angle = 25
+dilation_angle = 0
 cohesion = "20 kPa"
 density = 1800
 [[body]]

@@ -11,9 +11,9 @@ model = "mohr-coulomb-softening"
 young = "1 MPa"
 poisson = 0.3
 density = 2000
-friction = 18
+friction_angle = 18
 cohesion = "500 Pa"
-residual_friction = 15
+residual_friction_angle = 15
 residual_cohesion = 0
 softening_strain = 0.01
 [material.sensitive]
@@ -31,9 +31,9 @@ model = "modified-cam-clay"
 young = "1 MPa"
 poisson = 0.3
 density = 2000
-kappa = 0.02
-lambda = 0.12
-critical_ratio = 1.0
+kappa_star = 0.02
+lambda_star = 0.12
+critical_state_ratio = 1.0
 ocr = 1.2
 [material.grains]
 model = "mu-i"
@@ -66,7 +66,7 @@ fn block(geometry: &str, thick: f64, back: &str) -> String {
     format!(
         "geometry = \"{geometry}\"\n\
          analysis = {{ type = \"dynamic\", end = 0.2, dt = 0.02 }}\n\
-         grid = {{ lower = {}, upper = {}, cell = 0.25, order = \"quadratic\", c0_lines = \"none\" }}\n\
+         grid = {{ lower = {}, upper = {}, cell = 0.25, degree = \"quadratic\", c0_lines = \"none\" }}\n\
          gravity = {{ acceleration = {} }}\ninitial = {{ k0 = 0.5 }}\n\
          solver = {{ tolerance = 1e-18, force_tolerance = 1e-12, background = 0 }}\n\
          output = {{ every = 0.1 }}\n\

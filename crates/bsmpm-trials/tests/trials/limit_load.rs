@@ -75,7 +75,7 @@ fn limit_loads_of_soil_with_friction_are_too_high_and_extrapolated_near_the_exac
 #[test]
 fn the_part_of_a_small_cohesion_is_measured() {
     let scratch = Scratch::new();
-    let settings = ["material.sand.cohesion=\"0.5 kPa\"", "footing.base=smooth"];
+    let settings = ["material.sand.cohesion=\"0.5 kPa\"", "footing.interface=smooth"];
     let (text, found) = limit_load(&scratch, "strip_on_sand", &settings);
     let part = found["loads"][0]["of_cohesion"].as_f64().expect("a part");
     // 12.2 % on the grid of 8 cells.

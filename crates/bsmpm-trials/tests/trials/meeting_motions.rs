@@ -10,7 +10,7 @@ const TRAPDOOR: &str = r#"
 geometry = "plane-strain"
 analysis = { type = "quasi-static", steps = 20 }
 boundary = { left = "roller", right = "roller" }
-grid     = { lower = [0.0, -0.5], upper = [6.0, 2.5], cell = CELL, order = "quadratic" }
+grid     = { lower = [0.0, -0.5], upper = [6.0, 2.5], cell = CELL, degree = "quadratic" }
 [material.clay]
 model    = "tresca"
 young    = "50 MPa"
@@ -55,14 +55,14 @@ analysis = { type = "quasi-static", steps = 20 }
 gravity  = { acceleration = [0.0, -9.81] }
 boundary = { bottom = "fixed", right = "roller" }
 initial  = { k0 = 0.5 }
-grid     = { lower = [0.0, -1.5], upper = [11.0, 3.0], cell = CELL, order = "quadratic" }
+grid     = { lower = [0.0, -1.5], upper = [11.0, 3.0], cell = CELL, degree = "quadratic" }
 [material.sand]
 model       = "mohr-coulomb"
 young       = "50 MPa"
 poisson     = 0.3
 cohesion    = "1 kPa"
-friction    = 30.0
-dilation    = 0.0
+friction_angle    = 30.0
+dilation_angle    = 0.0
 unit_weight = "20 kN/m3"
 [[body]]
 material = "sand"
@@ -142,7 +142,7 @@ fn strips_at_a_right_angle_and_strips_that_face_each_other_keep_their_motions() 
             "geometry = \"plane-strain\"\nanalysis = {{ type = \"quasi-static\", steps = 2 }}\n\
              boundary = {{ left = \"roller\" }}\n\
              grid = {{ lower = [0.0, -0.5], upper = [1.5, 1.5], cell = 0.25 }}\n\
-             [material.rock]\nmodel = \"hencky\"\nyoung = \"10 MPa\"\npoisson = 0.0\ndensity = 2000\n\
+             [material.rock]\nmodel = \"elastic\"\nyoung = \"10 MPa\"\npoisson = 0.0\ndensity = 2000\n\
              [[body]]\nmaterial = \"rock\"\nbox = {{ lower = [0.0, 0.0], upper = [1.0, {upper}] }}\npoints_per_cell = 2\n\
              [[prescribed]]\nname = \"top\"\nfrom = [0.0, {upper}]\nto = [1.0, {upper}]\ndisplacement = [0.0, {top}]\n\
              [[prescribed]]\nname = \"base\"\nfrom = [0.0, 0.0]\nto = [1.0, 0.0]\ndisplacement = [0.0, 0.0]\n\
@@ -181,8 +181,7 @@ fn motions_that_the_rule_does_not_cover_are_refused_by_name() {
     let output = scratch.direct(&["rough.toml", "--check", "--set", sliding]).expect(65);
     output.says_once("prescribed.1 meets prescribed.0, both hold the soil along their surface");
     scratch.direct(&["case.toml", "--check", "--set", sliding]).expect(0);
-    let rigid =
-        "\n[[rigid]]\nname = \"block\"\nfriction = 0.0\npolygon = [[1.0, -0.5], [6.0, -0.5], [6.0, 0.0], [1.0, 0.0]]\n";
+    let rigid = "\n[[rigid]]\nname = \"block\"\nfriction_coefficient = 0.0\npolygon = [[1.0, -0.5], [6.0, -0.5], [6.0, 0.0], [1.0, 0.0]]\n";
     let text = changed(TRAPDOOR, "CELL", "0.25");
     let (door, floor) = text.split_once("[[prescribed]]\nname = \"floor\"").expect("a floor");
     let (_, rest) = floor.split_once("displacement = [0.0, 0.0]\n").expect("its displacement");

@@ -10,14 +10,14 @@ geometry = "plane-strain"
 analysis = { type = "quasi-static", steps = 8 }
 gravity  = { acceleration = [0.0, -9.81], ramp = 1.0 }
 boundary = { bottom = "fixed", left = "roller", right = "roller" }
-grid     = { lower = [0.0, 0.0], upper = [3.0, 13.0], cell = 1.0, order = "quadratic" }
+grid     = { lower = [0.0, 0.0], upper = [3.0, 13.0], cell = 1.0, degree = "quadratic" }
 [material.soft]
-model = "hencky"
+model = "elastic"
 young = YOUNG
 poisson = 0.25
 unit_weight = "18 kN/m3"
 [material.stiff]
-model = "hencky"
+model = "elastic"
 young = 4 YOUNG
 poisson = 0.25
 unit_weight = "18 kN/m3"
@@ -86,9 +86,9 @@ const LEAK: &str = r#"
 geometry = "plane-strain"
 analysis = { type = "consolidation", end = "600 d", dt = "200 s", growth = 1.25 }
 boundary = { bottom = "fixed", left = "roller", right = "roller" }
-grid     = { lower = [0.0, 0.0], upper = [1.0, 6.5], cell = 0.5, order = "quadratic" }
-material.sand = { model = "hencky", young = "3 MPa", poisson = 0.0, porosity = 0.4, permeability = "1e-6 m/s" }
-material.silt = { model = "hencky", young = "3 MPa", poisson = 0.0, porosity = 0.4, permeability = "SILT m/s" }
+grid     = { lower = [0.0, 0.0], upper = [1.0, 6.5], cell = 0.5, degree = "quadratic" }
+material.sand = { model = "elastic", young = "3 MPa", poisson = 0.0, porosity = 0.4, permeability = "1e-6 m/s" }
+material.silt = { model = "elastic", young = "3 MPa", poisson = 0.0, porosity = 0.4, permeability = "SILT m/s" }
 body = [
     { material = "sand", box = { lower = [0.0, 0.0], upper = [1.0, 3.0] }, points_per_cell = 3 },
     { material = "silt", box = { lower = [0.0, 3.0], upper = [1.0, 4.0] }, points_per_cell = 3 },

@@ -15,9 +15,9 @@ dt = 0.005
 lower = [0, 0]
 upper = [6, 7]
 cell = 0.5
-order = "quadratic"
+degree = "quadratic"
 [material.stiff]
-model = "hencky"
+model = "elastic"
 young = "100 MPa"
 poisson = 0.25
 density = 2000
@@ -25,8 +25,8 @@ density = 2000
 model = "mohr-coulomb"
 young = "40 MPa"
 poisson = 0.3
-friction = 25
-dilation = 0
+friction_angle = 25
+dilation_angle = 0
 cohesion = "2 kPa"
 density = 1800
 [[body]]
@@ -70,13 +70,13 @@ dt = 0.005
 lower = [0, 0]
 upper = [1, 0.6]
 cell = 0.05
-order = "quadratic"
+degree = "quadratic"
 [material.sand]
 model = "mohr-coulomb"
 young = "1 MPa"
 poisson = 0.3
-friction = 25
-dilation = 0
+friction_angle = 25
+dilation_angle = 0
 cohesion = 0
 density = 1600
 [[body]]

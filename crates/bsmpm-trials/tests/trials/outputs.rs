@@ -328,9 +328,9 @@ fn a_place_in_graded_cells_is_read_as_accurately_as_the_points_around() {
         "geometry = \"plane-strain\"\nanalysis = {{ type = \"quasi-static\", steps = 2 }}\n\
          gravity = {{ acceleration = [0.0, -9.81], ramp = 1.0 }}\n\
          boundary = {{ bottom = \"fixed\", left = \"roller\", right = \"roller\" }}\n\
-         [grid]\norder = \"quadratic\"\nknots.x = [0.0, 0.5, 1.0]\n\
+         [grid]\ndegree = \"quadratic\"\nknots.x = [0.0, 0.5, 1.0]\n\
          knots.y = [0.0, 1.51, 2.8, 3.86, 4.75, 5.5, 6.12, 6.64, 7.07, 7.42, 7.75, 8.0, 8.25]\n\
-         [material.m]\nmodel = \"hencky\"\nyoung = 1e9\npoisson = 0.3\ndensity = 2000\n\
+         [material.m]\nmodel = \"elastic\"\nyoung = 1e9\npoisson = 0.3\ndensity = 2000\n\
          [[body]]\nmaterial = \"m\"\npoints_per_cell = 3\nbox = {{ lower = [0.0, 0.0], upper = [1.0, 8.0] }}\n\
          {histories}[[profile]]\nname = \"axis\"\nfrom = [0.5, 0.0]\nto = [0.5, 8.0]\ncount = 81\nquantities = \
          [\"stress\"]\n"

@@ -13,7 +13,7 @@ const GROUND: &str = r#"
     analysis = { type = "quasi-static", steps = 4 }
     gravity  = { acceleration = [-1.962, -9.81], ramp = 1.0 }
     boundary = { bottom = "fixed", left = "roller", right = "roller" }
-    grid     = { lower = [0.0, 0.0], upper = [40.0, 2.5], cell = 0.5, order = "quadratic" }
+    grid     = { lower = [0.0, 0.0], upper = [40.0, 2.5], cell = 0.5, degree = "quadratic" }
     initial  = { k0 = 0.5 }
     water    = { level = 2.0 }
     body     = [{ material = "soil", box = { lower = [0, 0], upper = [40, 2] }, points_per_cell = 2 }]
@@ -22,7 +22,7 @@ const GROUND: &str = r#"
         { quantity = "pore-pressure", at = [20.0, 0.75], name = "water" },
     ]
     [material.soil]
-    model       = "hencky"
+    model       = "elastic"
     young       = "1 GPa"
     poisson     = 0.3
     unit_weight = "18 kN/m3"
@@ -54,7 +54,7 @@ const LAYER: &str = r#"
     analysis = { type = "quasi-static", steps = 10 }
     gravity  = { acceleration = [0.0, -9.81], ramp = 1.0 }
     boundary = { bottom = "fixed" }
-    grid     = { lower = [-1.0, 0.0], upper = [21.0, 2.5], cell = 0.25, order = "quadratic" }
+    grid     = { lower = [-1.0, 0.0], upper = [21.0, 2.5], cell = 0.25, degree = "quadratic" }
     body     = [{ material = "clay", box = { lower = [0, 0], upper = [20, 2] }, points_per_cell = 3 }]
     stabilisation = { method = "consistent-f-bar" }
     [material.clay]
@@ -62,8 +62,8 @@ const LAYER: &str = r#"
     young       = "10 MPa"
     poisson     = 0.3
     cohesion    = "18 kPa"
-    friction    = 0
-    dilation    = 0
+    friction_angle    = 0
+    dilation_angle    = 0
     unit_weight = "20 kN/m3"
 "#;
 
@@ -72,10 +72,10 @@ const BLOCK: &str = r#"
     geometry = "plane-strain"
     analysis = { type = "quasi-static", steps = 5 }
     gravity  = { acceleration = [0.0, -9.81], ramp = 1.0 }
-    boundary = { bottom = { friction = 0.75 } }
-    grid     = { lower = [0, 0], upper = [3, 1], cell = "125 mm", order = "quadratic" }
+    boundary = { bottom = { friction_coefficient = 0.75 } }
+    grid     = { lower = [0, 0], upper = [3, 1], cell = "125 mm", degree = "quadratic" }
     body     = [{ material = "soil", box = { lower = [0.5, 0], upper = [1.5, 0.5] }, points_per_cell = 2 }]
-    material.soil = { model = "hencky", young = 1e7, poisson = 0.3, density = 2e3, ru = 0.4 }
+    material.soil = { model = "elastic", young = 1e7, poisson = 0.3, density = 2e3, ru = 0.4 }
 "#;
 
 fn critical(text: &str, [from, to]: [f64; 2], pushed: PushedSide) -> [Option<f64>; 3] {

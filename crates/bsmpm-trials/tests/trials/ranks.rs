@@ -95,7 +95,7 @@ fn the_filter_of_consistent_f_bar_and_gaps_are_the_same_on_1_2_and_3_ranks() {
     let (case, _check) = text.split_once("[[check]]").unwrap();
     let times = "times = [\"0.109 s\", \"0.235 s\", \"0.300 s\", \"0.351 s\", \"0.420 s\", \"0.607 s\"]";
     let case = changed(case, times, "");
-    let gaping = changed(&case, "cohesion    = 0.0", "cohesion    = 0.0\nseparation  = \"closing\"");
+    let gaping = changed(&case, "cohesion    = 0.0", "cohesion    = 0.0\nseparation  = \"gap\"");
     for case in [case, gaping] {
         let scratch = Scratch::with_case(&case);
         agree(&scratch, "case.toml", &["--set", "analysis.end=0.04"], &[1, 2, 3], 1e-9);
@@ -193,7 +193,7 @@ fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_a
 fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
-    for further in ["grid.order=cubic", "solver.quadrature=fitted", "stabilisation.method=subgrid-f-bar"] {
+    for further in ["grid.degree=cubic", "solver.quadrature=fitted", "stabilisation.method=subgrid-f-bar"] {
         let set = ["--set", mumps, "--set", "solver.nonlinear=broyden", "--set", further];
         let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
         let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 3));
@@ -225,7 +225,7 @@ fn the_stiffness_is_the_same_on_1_3_10_and_12_ranks_of_one_column_at_most() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let shared = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
     let (quadratic, cubic, shared) =
-        (["grid.order=quadratic"], ["grid.order=cubic"], [shared, "solver.reproducible=false"]);
+        (["grid.degree=quadratic"], ["grid.degree=cubic"], [shared, "solver.reproducible=false"]);
     let cases =
         [(&quadratic, &[][..], 5e-2), (&cubic, &[], 5e-2), (&quadratic, &shared, 1e-5), (&cubic, &shared, 1e-5)];
     for (order, solver, most) in cases {
@@ -300,7 +300,7 @@ fn multigrid_gives_the_same_on_1_2_4_and_8_ranks() {
 fn slabs_thinner_than_the_splines_reach_work_for_every_order() {
     let case = shipped("short/self_weight_column.toml");
     for order in ["linear", "quadratic", "cubic"] {
-        let order = format!("grid.order={order}");
+        let order = format!("grid.degree={order}");
         agree(&Scratch::new(), case.to_str().unwrap(), &["--set", &order], &[1, 3, 4, 8, 9], 1e-9);
     }
 }
@@ -311,7 +311,7 @@ fn slabs_thinner_than_the_splines_reach_work_for_every_order() {
 fn coupling_beyond_a_cell_is_the_same_on_1_2_4_and_8_ranks() {
     let case = shipped("short/self_weight_column.toml");
     for order in ["linear", "quadratic", "cubic"] {
-        let order = format!("grid.order={order}");
+        let order = format!("grid.degree={order}");
         let further = ["--set", "stabilisation.method=consistent-f-bar", "--set", &order];
         agree(&Scratch::new(), case.to_str().unwrap(), &further, &[1, 2, 4, 8], 1e-9);
     }

@@ -114,7 +114,7 @@ fn a_disc_rolls_and_slips_down_an_incline() {
     let way = t * t / 2.0 - ramp * t / 2.0 + ramp * ramp / 6.0;
     let slips = (along - 0.05 * across) * way;
     for (friction, exact, behind) in [(0.5, along * 2.0 / 3.0 * way, 0.035), (0.05, slips, 0.045)] {
-        let found = run("rolling_disc.toml", &[&format!("rigid.0.friction={friction}"), "check=[]"]);
+        let found = run("rolling_disc.toml", &[&format!("rigid.0.friction_coefficient={friction}"), "check=[]"]);
         let gone = at(&found, "rigid-displacement-x", t);
         assert!((gone / exact - 1.0).abs() < behind, "friction {friction}: {gone}, {exact}");
         let rolled = -at(&found, "rigid-rotation", t).to_radians() * radius;

@@ -95,7 +95,7 @@ fn with_coupling_beyond_a_cell_it_goes_on_on_other_ranks_too() {
 #[test]
 fn the_state_of_a_law_goes_along() {
     let clay = "model = \"von-mises\"\nyield_stress = 2e3\nhardening = 5e4";
-    let case = changed(SLIDING_BLOCK, "model   = \"hencky\"", clay);
+    let case = changed(SLIDING_BLOCK, "model   = \"elastic\"", clay);
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "whole"]).expect(0);
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
@@ -316,7 +316,7 @@ fn the_clock_can_ask_for_checkpoints_and_they_change_nothing() {
     }
 }
 
-const CLAY: &str = "[material.clay]\nmodel = \"hencky\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n\n[[body]]";
+const CLAY: &str = "[material.clay]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n\n[[body]]";
 
 #[test]
 fn materials_in_another_order_are_another_case() {

@@ -16,9 +16,9 @@ dt = 0.003
 lower = [0, 0]
 upper = [4, 2]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "1 MPa"
 poisson = 0.3
 density = 1800
@@ -30,13 +30,13 @@ points_per_cell = 2
 name = "block"
 polygon = [[0.6, 1.02], [1.2, 1.02], [1.2, 1.4], [0.6, 1.4]]
 density = 2500
-friction = 0.4
+friction_coefficient = 0.4
 free = ["x", "y", "rotation"]
 start_velocity = [0.3, -0.5]
 [[rigid]]
 name = "roller"
-circle = { center = [2.8, 1.5], radius = 0.5 }
-friction = 0.3
+circle = { centre = [2.8, 1.5], radius = 0.5 }
+friction_coefficient = 0.3
 path = [[0.06, 0.0, -0.03], [0.12, 0.05, -0.03]]
 rotation = [[0.06, 0.0], [0.12, -10.0]]
 [gravity]
@@ -113,7 +113,7 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
 
 #[test]
 fn what_is_doubtful_of_rigid_bodies_is_told_and_what_nothing_holds_ends_the_run() {
-    let met = changed(CASE, "center = [2.8, 1.5], radius = 0.5", "center = [1.3, 1.9], radius = 0.5");
+    let met = changed(CASE, "centre = [2.8, 1.5], radius = 0.5", "centre = [1.3, 1.9], radius = 0.5");
     let met = changed(&met, "[0.06, 0.0, -0.03]", "[0.06, -0.1, -0.3]");
     let scratch = Scratch::with_case(&changed(&met, "dt = 0.003", "dt = 0.03"));
     scratch.mpirun(1, &["case.toml", "--check"]).expect(0).says_once("it moves up to");
@@ -138,13 +138,13 @@ steps = 20
 lower = [-1, 0]
 upper = [8, 4]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.sand]
 model = "mohr-coulomb"
 young = "20 MPa"
 poisson = 0.3
-friction = 30
-dilation = 0
+friction_angle = 30
+dilation_angle = 0
 cohesion = 0
 unit_weight = "18 kN/m3"
 [[body]]
@@ -154,7 +154,7 @@ points_per_cell = 3
 [[rigid]]
 name = "wall"
 polygon = [[-0.9, 0], [0, 0], [0, 3.3], [-0.9, 3.3]]
-friction = 0.0
+friction_coefficient = 0.0
 displacement = [-0.02, 0]
 [initial]
 k0 = 0.5
@@ -202,7 +202,7 @@ fn a_rigid_wall_that_goes_away_from_sand_has_rankines_and_coulombs_active_thrust
     // 7e-13 seen.
     assert!((two[0] / smooth[0] - 1.0).abs() < 1e-6, "{two:?} on two ranks, {smooth:?} on one");
     // From rest; -2.2 %, and all of it slides: friction is .3 to rounding.
-    let rough = thrust(&changed(WALL, "friction = 0.0", "friction = 0.3"), 1, "rigid-force");
+    let rough = thrust(&changed(WALL, "friction_coefficient = 0.0", "friction_coefficient = 0.3"), 1, "rigid-force");
     assert!((rough[0] / active(0.3) - 1.0).abs() < 0.03, "{rough:?}");
     assert!((rough[1] / rough[0] / 0.3 - 1.0).abs() < 1e-9, "{rough:?}");
 }
@@ -210,8 +210,10 @@ fn a_rigid_wall_that_goes_away_from_sand_has_rankines_and_coulombs_active_thrust
 /// The same wall as a strip in contact: it, too, ended in its first step, whose points pressed nothing before.
 #[test]
 fn a_strip_in_contact_that_goes_away_from_sand_at_rest_has_rankines_and_coulombs_active_thrust() {
-    let body = "[[rigid]]\nname = \"wall\"\npolygon = [[-0.9, 0], [0, 0], [0, 3.3], [-0.9, 3.3]]\nfriction = 0.0";
-    let strip = "[[prescribed]]\nname = \"wall\"\nfrom = [0, 0]\nto = [0, 3]\ncomponents = { friction = MU }";
+    let body =
+        "[[rigid]]\nname = \"wall\"\npolygon = [[-0.9, 0], [0, 0], [0, 3.3], [-0.9, 3.3]]\nfriction_coefficient = 0.0";
+    let strip =
+        "[[prescribed]]\nname = \"wall\"\nfrom = [0, 0]\nto = [0, 3]\ncomponents = { friction_coefficient = MU }";
     let as_strip = changed(&changed(WALL, body, strip), "\"rigid-force\"\nrigid", "\"reaction\"\nof");
     for friction in [0.0, 0.3] {
         let found = thrust(&changed(&as_strip, "MU", &format!("{friction:?}")), 1, "reaction").map(f64::abs);
@@ -228,7 +230,7 @@ fn a_rigid_wall_that_is_pushed_into_sand_has_rankines_passive_thrust() {
     for (active, passive) in [
         ("displacement = [-0.02, 0]", "displacement = [0.05, 0]"),
         ("cell = 0.25", "cell = 0.5"),
-        ("dilation = 0", "dilation = 30"),
+        ("dilation_angle = 0", "dilation_angle = 30"),
         ("bottom = \"fixed\"", "bottom = \"roller\""),
     ] {
         pushed = changed(&pushed, active, passive);
@@ -250,9 +252,9 @@ steps = 8
 lower = [0, 0]
 upper = [2, 4]
 cell = 0.5
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "100 GPa"
 poisson = 0.25
 density = 2000
@@ -268,10 +270,10 @@ force = [0, -1e6]
 ramp = 1
 [[stage]]
 at = 1
-apply = ["plate"]
+activate = ["plate"]
 [[stage]]
 at = 3
-release = ["plate"]
+deactivate = ["plate"]
 [boundary]
 bottom = "fixed"
 left = "roller"
@@ -324,10 +326,11 @@ fn a_rigid_body_that_a_stage_places_falls_from_then_on() {
     let case = changed(
         &case,
         "polygon = [[-1, 2], [3, 2], [3, 3.5], [-1, 3.5]]",
-        "circle = { center = [1, 3.3], radius = 0.2 }",
+        "circle = { centre = [1, 3.3], radius = 0.2 }",
     );
     let case = changed(&case, "force = [0, -1e6]\nramp = 1", "density = 2500");
-    let case = changed(&case, "[[stage]]\nat = 3\nrelease = [\"plate\"]\n", "[gravity]\nacceleration = [0, -9.81]\n");
+    let case =
+        changed(&case, "[[stage]]\nat = 3\ndeactivate = [\"plate\"]\n", "[gravity]\nacceleration = [0, -9.81]\n");
     let scratch = Scratch::with_case(&changed(&case, "at = 1\n", "at = 0.2\n"));
     scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
     let found = history(&scratch.path("out"));
@@ -346,7 +349,7 @@ fn a_rough_punch_on_clay_goes_the_whole_way() {
     let case = shipped("validation/rigid_punch.toml");
     for (lines, expected) in [("none", 6.09), ("automatic", 5.46)] {
         let lines = format!("grid.c0_lines={lines}");
-        let set = ["--set", "rigid.0.friction=1.0", "--set", "check=[]", "--set", &lines];
+        let set = ["--set", "rigid.0.friction_coefficient=1.0", "--set", "check=[]", "--set", &lines];
         scratch.mpirun(1, &[&[case.to_str().unwrap(), "-q", "--force", "-o", "out"][..], &set].concat()).expect(0);
         let pressure = at(&history(&scratch.path("out")), "p_over_c-y", 1.0);
         assert!((pressure / expected - 1.0).abs() < 0.005, "{pressure} for {expected}");
@@ -363,9 +366,9 @@ steps = 2
 lower = [0, 0]
 upper = [2, 2.25]
 cell = 0.125
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "10 MPa"
 poisson = 0.3
 [[body]]
@@ -385,7 +388,7 @@ method = "none"
 fn a_wedge_that_lies_in_a_notch_touches_its_sides() {
     let wedge = "[[rigid]]\nname = \"wedge\"\npolygon = [[0, 1.5], [0.5, 2], [0.5, 2.2], [-0.5, 2.2], [-0.5, 2]]\n\
                  displacement = [0, -0.002]\n[[history]]\nquantity = \"rigid-force\"\nrigid = \"wedge\"\nname = \"f\"\n";
-    let footing = "[footing]\nfrom = [0, 1.5]\nto = [0.5, 2]\ndisplacement = [0, -0.002]\nbase = \"smooth\"\n\
+    let footing = "[footing]\nfrom = [0, 1.5]\nto = [0.5, 2]\ndisplacement = [0, -0.002]\ninterface = \"smooth\"\n\
                    [[history]]\nquantity = \"footing-force\"\nname = \"f\"\n";
     let force = |by: &str, column: &str| {
         let scratch = Scratch::with_case(&format!("{NOTCH}{by}"));

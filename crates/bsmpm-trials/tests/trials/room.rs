@@ -51,7 +51,7 @@ fn a_room_that_is_made_anew_has_the_bits_of_a_grid_that_is_held_whole() {
 fn what_couples_further_than_a_cell_has_the_same_bits_in_larger_grids() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     for order in ["linear", "quadratic", "cubic"] {
-        let order = format!("grid.order={order}");
+        let order = format!("grid.degree={order}");
         let set = [&WHOLE[..], &["--set", "stabilisation.method=consistent-f-bar", "--set", &order]].concat();
         agree(&scratch, &[1, 3], &["[1.0,0.3]", "[6.0,1.8]"], &set, 30);
     }

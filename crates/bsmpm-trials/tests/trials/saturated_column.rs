@@ -18,9 +18,9 @@ mass = "consistent"
 lower = [0, 0]
 upper = [0.4, 1.0]
 cell = [0.1, 0.05]
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "1 MPa"
 poisson = 0.0
 density = "1000 kg/m3"

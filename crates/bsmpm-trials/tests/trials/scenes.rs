@@ -16,10 +16,10 @@ steps = 8
 lower = [-2.0, 1.0]
 upper = [6.0, 6.0]
 cell  = "1 m"
-order = "quadratic"
+degree = "quadratic"
 
 [material.soil]
-model       = "hencky"
+model       = "elastic"
 young       = { value = "1 MPa", at_y = 5.0, per_metre = "0.5 MPa/m" }
 poisson     = 0.3
 unit_weight = "20 kN/m3"
@@ -48,7 +48,7 @@ components = "normal"
 from = [-1.5, 5.0]
 to   = [2.5, 5.0]
 displacement = [0.1, -0.4]
-base = "rough"
+interface = "rough"
 
 [[traction]]
 from   = [3.0, 5.0]
@@ -164,9 +164,9 @@ steps = 1
 lower = [{lower:?}, 0.0]
 upper = [{upper:?}, 0.7]
 cell  = 0.1
-order = "quadratic"
+degree = "quadratic"
 [material.rubber]
-model   = "hencky"
+model   = "elastic"
 young   = "1 MPa"
 poisson = 0.0
 [[body]]
@@ -291,8 +291,8 @@ fn a_load_whose_points_leave_the_grid_is_told_and_ends_the_run() {
 #[test]
 fn a_start_that_is_out_of_balance_or_beyond_yield_is_warned_of() {
     // Earth pressure at rest belongs to level ground: on the slope of this body it is off balance.
-    let weak = "model = \"mohr-coulomb\"\nfriction = 20\ndilation = 0\ncohesion = \"10 kPa\"";
-    let case = changed(&changed(LOADED, "model       = \"hencky\"", weak), "gravity = \"elastic\"", "k0 = 0.1");
+    let weak = "model = \"mohr-coulomb\"\nfriction_angle = 20\ndilation_angle = 0\ncohesion = \"10 kPa\"";
+    let case = changed(&changed(LOADED, "model       = \"elastic\"", weak), "gravity = \"elastic\"", "k0 = 0.1");
     let warnings = |case: &str| {
         let scratch = Scratch::with_case(case);
         scratch.mpirun(2, &["case.toml", "-q", "--max-steps", "1"]);
@@ -348,9 +348,9 @@ steps = 1
 lower = [0.0, 0.0]
 upper = [2.5, 1.0]
 cell = 0.0625
-order = "quadratic"
+degree = "quadratic"
 [material.steel]
-model = "hencky"
+model = "elastic"
 young = "1 GPa"
 poisson = 0.3
 [[body]]

@@ -17,13 +17,13 @@ steps = 4
 lower = [0, 0]
 upper = [4, 8]
 cell = "1 m"
-order = "quadratic"
+degree = "quadratic"
 [material.low]
 model = "mohr-coulomb"
 young = "100 MPa"
 poisson = 0.3
 cohesion = 0.0
-friction = 30.0
+friction_angle = 30.0
 ocr = 2.0
 unit_weight = "20 kN/m3"
 [material.high]
@@ -31,7 +31,7 @@ model = "drucker-prager"
 young = "30 MPa"
 poisson = 0.2
 cohesion = "1 kPa"
-friction = 25.0
+friction_angle = 25.0
 k0 = 0.65
 unit_weight = "17 kN/m3"
 [[body]]
@@ -102,13 +102,13 @@ steps = 4
 lower = [0, 0]
 upper = [32, 12]
 cell = "2 m"
-order = "quadratic"
+degree = "quadratic"
 [material.sand]
 model = "mohr-coulomb"
 young = "100 MPa"
 poisson = 0.3
 cohesion = 0.0
-friction = 30.0
+friction_angle = 30.0
 unit_weight = "20 kN/m3"
 [[body]]
 material = "sand"
@@ -166,9 +166,9 @@ fn a_slope_of_sand_near_its_friction_angle_begins_at_rest() {
 /// Elastic soil is pulled at a slope's top, where a law that has nothing without pressure has no state to start from.
 #[test]
 fn a_slope_of_cam_clay_begins_at_rest() {
-    let clay = "modified-cam-clay\"\nkappa = 0.02\nlambda = 0.12\ncritical_ratio = 1.0\nocr = 2.5";
+    let clay = "modified-cam-clay\"\nkappa_star = 0.02\nlambda_star = 0.12\ncritical_state_ratio = 1.0\nocr = 2.5";
     let case = changed(SAND, "mohr-coulomb\"", clay);
-    let case = changed(&case, "cohesion = 0.0\nfriction = 30.0\n", "");
+    let case = changed(&case, "cohesion = 0.0\nfriction_angle = 30.0\n", "");
     let case = changed(&case, "100 MPa", "10 MPa");
     let case = changed(&case, "[8, 10], [0, 10]", "[8, 6], [0, 6]");
     let scratch = Scratch::with_case(&changed(&case, "k0 = 0.5", "k0 = 0.7"));
@@ -223,7 +223,7 @@ fn a_toe_that_ends_in_a_point_needs_extended_splines_or_more_points() {
         ("[[0, 0], [32, 0], [32, 2], [24, 2], [8, 10], [0, 10]]", "[[0, 0], [18, 0], [8, 5], [0, 5]]"),
         ("upper = [32, 12]", "upper = [20, 6]"),
         ("cell = \"2 m\"", "cell = \"1 m\""),
-        ("cohesion = 0.0\nfriction = 30.0", "cohesion = \"10 kPa\"\nfriction = 25.0"),
+        ("cohesion = 0.0\nfriction_angle = 30.0", "cohesion = \"10 kPa\"\nfriction_angle = 25.0"),
     ];
     let case = changes.iter().fold(SAND.to_owned(), |case, (part, by)| changed(&case, part, by));
     let two = changed(&case, "points_per_cell = 3", "points_per_cell = 2");
@@ -243,7 +243,7 @@ fn a_toe_that_ends_in_a_point_needs_extended_splines_or_more_points() {
 
 /// Clay with a step of 3 m in its surface, at x = 12 m.
 fn stepped() -> String {
-    let case = changed(SAND, "cohesion = 0.0\nfriction = 30.0", "cohesion = \"15 kPa\"\nfriction = 20.0");
+    let case = changed(SAND, "cohesion = 0.0\nfriction_angle = 30.0", "cohesion = \"15 kPa\"\nfriction_angle = 20.0");
     let case = changed(
         &case,
         "[[0, 0], [32, 0], [32, 2], [24, 2], [8, 10], [0, 10]]",
@@ -306,13 +306,13 @@ dt = "6 h"
 lower = [0, 0]
 upper = [30, 12]
 cell = "1 m"
-order = "quadratic"
+degree = "quadratic"
 [material.silt]
 model = "mohr-coulomb"
 young = "20 MPa"
 poisson = 0.3
 cohesion = "8 kPa"
-friction = 30
+friction_angle = 30
 unit_weight = "18 kN/m3"
 saturated_unit_weight = "20 kN/m3"
 drainage = "coupled"

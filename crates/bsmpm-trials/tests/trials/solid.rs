@@ -17,14 +17,14 @@ dt = 0.02
 lower = [0, 0]
 upper = [4, 2]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.sand]
 model = "mohr-coulomb"
 young = "1 MPa"
 poisson = 0.3
 density = 2000
-friction = 25
-dilation = 0
+friction_angle = 25
+dilation_angle = 0
 cohesion = "1 kPa"
 [[body]]
 material = "sand"
@@ -53,7 +53,7 @@ at = [0.5, 0.25]
 pub fn slice() -> String {
     let mut slice = PLANE.to_owned();
     for (plane, solid) in [
-        ("geometry = \"plane-strain\"", "geometry = \"solid\""),
+        ("geometry = \"plane-strain\"", "geometry = \"3d\""),
         ("lower = [0, 0]\nupper = [4, 2]", "lower = [0, 0, 0]\nupper = [4, 0.25, 2]"),
         ("{ lower = [0, 0], upper = [1, 1.5] }", "{ lower = [0, 0, 0], upper = [1, 0.25, 1.5] }"),
         ("[0, -9.81]", "[0, 0, -9.81]"),
@@ -73,7 +73,7 @@ fn layered(case: &str) -> String {
     layered = changed(&layered, &format!("box = {{ lower = {from}0]"), &format!("box = {{ lower = {from}0.5]"));
     layered
         + &format!(
-            "[material.stiff]\nmodel = \"hencky\"\nyoung = \"10 MPa\"\npoisson = 0.3\ndensity = 2000\n[[body]]\n\
+            "[material.stiff]\nmodel = \"elastic\"\nyoung = \"10 MPa\"\npoisson = 0.3\ndensity = 2000\n[[body]]\n\
              material = \"stiff\"\nbox = {{ lower = {from}0], upper = [1, {thick}0.5] }}\npoints_per_cell = 2\n"
         )
 }
@@ -112,7 +112,7 @@ fn a_slice_between_rollers_is_plane_strain_but_for_f_bars_exponent() {
 
 /// A round column of sand that is let go.
 const COLUMN: &str = r#"
-geometry = "solid"
+geometry = "3d"
 [analysis]
 type = "dynamic"
 end = 0.2
@@ -121,18 +121,18 @@ dt = 0.01
 lower = [0, 0, 0]
 upper = [3, 3, 1.25]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.sand]
 model = "mohr-coulomb"
 young = "1 MPa"
 poisson = 0.3
 density = 2000
-friction = 30
-dilation = 0
+friction_angle = 30
+dilation_angle = 0
 cohesion = 0
 [[body]]
 material = "sand"
-extrude = { circle = { center = [1.5, 1.5], radius = 0.6 }, along = "z", from = 0, to = 1 }
+extrude = { circle = { centre = [1.5, 1.5], radius = 0.6 }, along = "z", from = 0, to = 1 }
 points_per_cell = 2
 [gravity]
 acceleration = [0, 0, -9.81]
@@ -193,9 +193,9 @@ fn a_round_column_is_the_same_on_2_x_2_ranks_and_goes_on_between_them_and_slabs(
 fn a_round_column_that_slides_is_the_same_on_2_x_2_ranks_whatever_couples_their_cells() {
     let text = changed(COLUMN, "bottom = \"fixed\"", "bottom = \"roller\"");
     let text = changed(&text, "points_per_cell = 2", "points_per_cell = 2\nvelocity = [3, 4, 0]");
-    let text = changed(&text, "center = [1.5, 1.5]", "center = [1, 1]");
+    let text = changed(&text, "centre = [1.5, 1.5]", "centre = [1, 1]");
     let scratch = Scratch::with_case(&changed(&text, "cohesion = 0", "cohesion = 5e3"));
-    let further: [&[&str]; 3] = [&[], &["--set", "stabilisation.method=none"], &["--set", "grid.order=cubic"]];
+    let further: [&[&str]; 3] = [&[], &["--set", "stabilisation.method=none"], &["--set", "grid.degree=cubic"]];
     for further in further {
         for ranks in [1, 4, 6] {
             let directory = format!("out{ranks}");
@@ -221,13 +221,13 @@ fn a_rank_that_dies_ends_the_job_on_2_x_2_ranks_too() {
 #[test]
 fn a_box_weighs_what_it_weighs() {
     let still = changed(COLUMN, "type = \"dynamic\"\nend = 0.2\ndt = 0.01", "type = \"quasi-static\"\nsteps = 2");
-    let circle = "extrude = { circle = { center = [1.5, 1.5], radius = 0.6 }, along = \"z\", from = 0, to = 1 }";
+    let circle = "extrude = { circle = { centre = [1.5, 1.5], radius = 0.6 }, along = \"z\", from = 0, to = 1 }";
     let still = changed(&still, circle, "box = { lower = [0, 0, 0], upper = [1, 1, 1] }");
     let still = changed(&still, "upper = [3, 3, 1.25]", "upper = [1, 1, 1.25]");
     let rollers = ["left", "right", "front", "back", "bottom"].map(|side| format!("{side} = \"roller\"\n")).concat();
     let still = changed(&still, "bottom = \"fixed\"\n", &rollers);
-    let still = changed(&still, "model = \"mohr-coulomb\"", "model = \"hencky\"");
-    let still = changed(&still, "friction = 30\ndilation = 0\ncohesion = 0\n", "");
+    let still = changed(&still, "model = \"mohr-coulomb\"", "model = \"elastic\"");
+    let still = changed(&still, "friction_angle = 30\ndilation_angle = 0\ncohesion = 0\n", "");
     let still = changed(&still, "every = 0.1", "every = 1.0");
     let wanted = "[[history]]\nquantity = \"displacement\"\nat = [0.5, 0.5, 1]\n";
     let scratch = Scratch::with_case(&format!("{still}{wanted}"));
@@ -315,9 +315,9 @@ steps = 2
 lower = [0, 0]
 upper = [1.5, 1.25]
 cell = 0.125
-order = "quadratic"
+degree = "quadratic"
 [material.soft]
-model = "hencky"
+model = "elastic"
 young = "100 kPa"
 poisson = 0.3
 density = 2000
@@ -343,11 +343,11 @@ quantity = "energy"
 "#;
     let mut quarter = ROUND.to_owned();
     for (round, solid) in [
-        ("geometry = \"axisymmetric\"", "geometry = \"solid\""),
+        ("geometry = \"axisymmetric\"", "geometry = \"3d\""),
         ("lower = [0, 0]\nupper = [1.5, 1.25]", "lower = [0, 0, 0]\nupper = [1.5, 1.5, 1.25]"),
         (
             "box = { lower = [0, 0], upper = [1, 1] }",
-            "extrude = { circle = { center = [0, 0], radius = 1 }, along = \"z\", from = 0, to = 1 }\nsubtract = [\
+            "extrude = { circle = { centre = [0, 0], radius = 1 }, along = \"z\", from = 0, to = 1 }\nsubtract = [\
              { box = { lower = [-2, -2, 0], upper = [0, 2, 1] } }, { box = { lower = [-2, -2, 0], upper = [2, 0, 1] } }]",
         ),
         ("[0, -9.81]", "[0, 0, -9.81]"),

@@ -6,7 +6,7 @@ use crate::support::results::{at, history};
 
 /// A block on a base that is inclined, by gravity, by tan(theta) = .5 along (.8, .6).
 const BLOCK: &str = r#"
-geometry = "solid"
+geometry = "3d"
 [analysis]
 type = "dynamic"
 end = 0.5
@@ -15,9 +15,9 @@ dt = "5 ms"
 lower = [0, 0, 0]
 upper = [2.0, 1.75, 0.5]
 cell = 0.125
-order = "quadratic"
+degree = "quadratic"
 [material.block]
-model = "hencky"
+model = "elastic"
 young = "10 MPa"
 poisson = 0.3
 density = 1000
@@ -29,7 +29,7 @@ points_per_cell = 2
 acceleration = [3.50973224, 2.63229918, -8.7743305]
 ramp = "0.1 s"
 [boundary]
-bottom = { friction = 0.3 }
+bottom = { friction_coefficient = 0.3 }
 [[history]]
 quantity = "momentum"
 [[history]]
@@ -69,7 +69,7 @@ fn a_block_slides_askew_with_its_acceleration_and_sticks_with_more_friction() {
 /// Above the tangent of the slope it rests where the elastic block leaves it.
 #[test]
 fn a_block_sticks_where_friction_is_more_than_the_slope() {
-    let scratch = Scratch::with_case(&changed(BLOCK, "friction = 0.3", "friction = 0.6"));
+    let scratch = Scratch::with_case(&changed(BLOCK, "friction_coefficient = 0.3", "friction_coefficient = 0.6"));
     scratch.mpirun(2, &["case.toml", "-q", "-o", "sticks"]).expect(0);
     let table = history(&scratch.path("sticks"));
     for axis in ["x", "y"] {
@@ -85,7 +85,11 @@ fn a_block_sticks_where_friction_is_more_than_the_slope() {
 /// whose edge with the base the two faces share nodes.
 #[test]
 fn a_block_in_a_corner_is_the_same_on_all_numbers_of_ranks() {
-    let wall = changed(BLOCK, "bottom = { friction = 0.3 }", "bottom = { friction = 0.3 }\nback = \"contact\"");
+    let wall = changed(
+        BLOCK,
+        "bottom = { friction_coefficient = 0.3 }",
+        "bottom = { friction_coefficient = 0.3 }\nback = \"contact\"",
+    );
     let wall = changed(&wall, "upper = [2.0, 1.75, 0.5]", "upper = [2.0, 1.0, 0.5]");
     let wall = changed(&wall, "end = 0.5", "end = 0.25");
     let wall =
@@ -113,10 +117,10 @@ fn a_block_in_a_corner_is_the_same_on_all_numbers_of_ranks() {
 #[test]
 fn a_slice_that_slides_is_plane_strain() {
     let plane = "geometry = \"plane-strain\"\n[analysis]\ntype = \"dynamic\"\nend = 0.2\ndt = \"5 ms\"\n\
-        [grid]\nlower = [0, 0]\nupper = [2.0, 0.5]\ncell = 0.125\norder = \"quadratic\"\n\
-        [material.block]\nmodel = \"hencky\"\nyoung = \"10 MPa\"\npoisson = 0.3\ndensity = 1000\n\
+        [grid]\nlower = [0, 0]\nupper = [2.0, 0.5]\ncell = 0.125\ndegree = \"quadratic\"\n\
+        [material.block]\nmodel = \"elastic\"\nyoung = \"10 MPa\"\npoisson = 0.3\ndensity = 1000\n\
         [[body]]\nmaterial = \"block\"\nbox = { lower = [0.5, 0], upper = [1.0, 0.25] }\npoints_per_cell = 2\n\
-        [gravity]\nacceleration = [4.3871653, -8.7743305]\nramp = 0.1\n[boundary]\nbottom = { friction = 0.3 }\n\
+        [gravity]\nacceleration = [4.3871653, -8.7743305]\nramp = 0.1\n[boundary]\nbottom = { friction_coefficient = 0.3 }\n\
         [solver]\nbackground = 0\ntolerance = 1e-18\nforce_tolerance = 1e-10\n\
         [[history]]\nquantity = \"momentum\"\n[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n\
         [[history]]\nquantity = \"friction-power\"\nface = \"bottom\"\n[[history]]\nquantity = \"gap\"\nface = \"bottom\"\n";
@@ -126,7 +130,10 @@ fn a_slice_that_slides_is_plane_strain() {
         ("upper = [2.0, 0.5]", "upper = [2.0, 0.25, 0.5]"),
         ("lower = [0.5, 0], upper = [1.0, 0.25]", "lower = [0.5, 0, 0], upper = [1.0, 0.25, 0.25]"),
         ("[4.3871653, -8.7743305]", "[4.3871653, 0, -8.7743305]"),
-        ("bottom = { friction = 0.3 }", "bottom = { friction = 0.3 }\nfront = \"roller\"\nback = \"roller\""),
+        (
+            "bottom = { friction_coefficient = 0.3 }",
+            "bottom = { friction_coefficient = 0.3 }\nfront = \"roller\"\nback = \"roller\"",
+        ),
     ] {
         slice = changed(&slice, from, to);
     }
@@ -147,7 +154,7 @@ fn a_slice_that_slides_is_plane_strain() {
 /// A bar that meets a wall comes back, and the wall has not pulled it.
 #[test]
 fn a_bar_meets_a_wall_and_leaves_it() {
-    let bar = changed(BLOCK, "bottom = { friction = 0.3 }", "right = \"contact\"");
+    let bar = changed(BLOCK, "bottom = { friction_coefficient = 0.3 }", "right = \"contact\"");
     let bar = changed(&bar, "box = { lower = [0.5, 0.5, 0], upper = [1.0, 1.0, 0.25] }", BAR);
     let bar = changed(&bar, "[gravity]\nacceleration = [3.50973224, 2.63229918, -8.7743305]\nramp = \"0.1 s\"\n", "");
     let bar = changed(&bar, "end = 0.5\ndt = \"5 ms\"", "end = 0.06\ndt = \"0.2 ms\"");
@@ -176,7 +183,7 @@ fn pressed(solid: bool, friction: f64) -> String {
             "solid",
             "[1.5, 1.5, 1]",
             "left = \"roller\"\nfront = \"roller\"\n",
-            "extrude = { circle = { center = [0, 0], radius = 1 }, along = \"z\", from = 0, to = 1 }\n\
+            "extrude = { circle = { centre = [0, 0], radius = 1 }, along = \"z\", from = 0, to = 1 }\n\
              subtract = [{ box = { lower = [-2, -2, -1], upper = [0, 2, 2] } }, { box = { lower = [-2, -2, -1], upper = [2, 0, 2] } }]",
             "[0, 0, -0.02]",
         ),
@@ -190,9 +197,9 @@ fn pressed(solid: bool, friction: f64) -> String {
     };
     format!(
         "geometry = \"{geometry}\"\nanalysis = {{ type = \"quasi-static\", steps = 5 }}\n\
-         [grid]\nlower = {}\nupper = {upper}\ncell = 0.125\norder = \"quadratic\"\n\
-         [boundary]\nbottom = {{ friction = {friction} }}\n{faces}\
-         [material.clay]\nmodel = \"hencky\"\nyoung = \"10 MPa\"\npoisson = 0.3\n\
+         [grid]\nlower = {}\nupper = {upper}\ncell = 0.125\ndegree = \"quadratic\"\n\
+         [boundary]\nbottom = {{ friction_coefficient = {friction} }}\n{faces}\
+         [material.clay]\nmodel = \"elastic\"\nyoung = \"10 MPa\"\npoisson = 0.3\n\
          [[body]]\nmaterial = \"clay\"\n{body}\npoints_per_cell = 2\n\
          [[prescribed]]\nname = \"plate\"\nface = \"top\"\ndisplacement = {down}\ncomponents = \"normal\"\n\
          [[history]]\nquantity = \"reaction\"\nof = \"plate\"\n[[history]]\nquantity = \"contact\"\nface = \"bottom\"\n\

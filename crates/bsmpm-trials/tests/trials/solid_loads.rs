@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 /// A cube on three rollers that is loaded along one axis.
 const CUBE: &str = r#"
-geometry = "solid"
+geometry = "3d"
 [analysis]
 type = "quasi-static"
 steps = 1
@@ -15,9 +15,9 @@ steps = 1
 lower = [0, 0, 0]
 upper = [1.5, 1.5, 1.5]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "1 MPa"
 poisson = 0.3
 [[body]]
@@ -95,7 +95,7 @@ fn the_base_holds_what_acts_on_a_part_of_a_face() {
 
 /// A bar of square section that is held at one end, 4 and 8 cells across.
 pub const BAR: &str = r#"
-geometry = "solid"
+geometry = "3d"
 [analysis]
 type = "quasi-static"
 steps = 1
@@ -103,9 +103,9 @@ steps = 1
 lower = [0, 0, 0]
 upper = [2.25, 0.75, 0.75]
 cell = 0.125
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "1 MPa"
 poisson = 0.3
 [[body]]
@@ -201,16 +201,16 @@ force_tolerance = 1e-11
 /// A plate across the whole of a slice, smooth, rough and with friction.
 #[test]
 fn a_plate_across_a_slice_is_the_strip_of_plane_strain() {
-    let plane = "geometry = \"plane-strain\"\ngrid = { lower = [0, 0], upper = [2, 1.25], cell = 0.25, order = \"quadratic\" }\n\
+    let plane = "geometry = \"plane-strain\"\ngrid = { lower = [0, 0], upper = [2, 1.25], cell = 0.25, degree = \"quadratic\" }\n\
         boundary = { left = \"roller\", right = \"roller\", bottom = \"fixed\" }\n\
         body = [{ material = \"clay\", box = { lower = [0, 0], upper = [2, 1] }, points_per_cell = 4 }]\n\
         footing = { from = [0.5, 1], to = [1, 1], displacement = [AHEAD, -0.005], base = BASE }";
-    let slice = "geometry = \"solid\"\ngrid = { lower = [0, 0, 0], upper = [2, 0.5, 1.25], cell = 0.25, order = \"quadratic\" }\n\
+    let slice = "geometry = \"3d\"\ngrid = { lower = [0, 0, 0], upper = [2, 0.5, 1.25], cell = 0.25, degree = \"quadratic\" }\n\
         boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
         body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 0.5, 1] }, points_per_cell = 4 }]\n\
         footing = { rectangle = { lower = [0.5, 0, 1], upper = [1, 0.5, 1] }, displacement = [AHEAD, 0, -0.005], base = BASE }";
     // What rubs in soil that yields needs far smaller steps.
-    let rubs = "{ friction = 0.1, lifts = true }";
+    let rubs = "{ friction_coefficient = 0.1, separates = true }";
     for (base, ahead, cohesion) in [("\"smooth\"", "0", "1 kPa"), ("\"rough\"", "0", "1 kPa"), (rubs, "0.02", "1 MPa")]
     {
         let run = |geometry: &str, ranks: usize| {
@@ -238,11 +238,11 @@ fn a_plate_across_a_slice_is_the_strip_of_plane_strain() {
 /// What rubs is rubbed against its motion, also along none of the axes.
 #[test]
 fn a_plate_that_slides_askew_has_its_friction_against_its_motion() {
-    let ground = "geometry = \"solid\"\ngrid = { lower = [0, 0, 0], upper = [2, 2, 1.25], cell = 0.25, order = \"quadratic\" }\n\
+    let ground = "geometry = \"3d\"\ngrid = { lower = [0, 0, 0], upper = [2, 2, 1.25], cell = 0.25, degree = \"quadratic\" }\n\
         boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
         body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 2, 1] }, points_per_cell = 2 }]\n\
         footing = { rectangle = { lower = [0.5, 0.5, 1], upper = [1.25, 1.25, 1] }, displacement = [0.03, -0.04, -0.005], \
-        base = { friction = 0.1 } }";
+        interface = { friction_coefficient = 0.1 } }";
     let case = changed(&changed(GROUND, "GEOMETRY", ground), "1 kPa", "1 MPa");
     let slid = "[[history]]\nquantity = \"friction-power\"\nof = \"footing\"\n";
     let scratch = Scratch::with_case(&format!("{case}{slid}"));
@@ -261,10 +261,10 @@ fn a_plate_that_slides_askew_has_its_friction_against_its_motion() {
 /// from a checkpoint to the bit.
 #[test]
 fn a_disc_is_the_same_on_all_numbers_of_ranks_and_goes_on_to_the_bit() {
-    let quarter = "geometry = \"solid\"\ngrid = { lower = [0, 0, 0], upper = [2, 2, 1.25], cell = 0.25, order = \"quadratic\" }\n\
+    let quarter = "geometry = \"3d\"\ngrid = { lower = [0, 0, 0], upper = [2, 2, 1.25], cell = 0.25, degree = \"quadratic\" }\n\
         boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
         body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 2, 1] }, points_per_cell = 2 }]\n\
-        footing = { disc = { center = [0, 0, 1], radius = 0.6 }, displacement = [0, 0, -0.01], base = \"rough\" }";
+        footing = { disc = { centre = [0, 0, 1], radius = 0.6 }, displacement = [0, 0, -0.01], interface = \"rough\" }";
     let scratch = Scratch::with_case(&changed(GROUND, "GEOMETRY", quarter));
     scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
     let table = history(&scratch.path("one"));
@@ -285,7 +285,7 @@ fn a_disc_is_the_same_on_all_numbers_of_ranks_and_goes_on_to_the_bit() {
 
 /// An eighth of a hollow sphere under a pressure inside.
 const HOLLOW: &str = r#"
-geometry = "solid"
+geometry = "3d"
 [analysis]
 type = "quasi-static"
 steps = 1
@@ -293,18 +293,18 @@ steps = 1
 lower = [0, 0, 0]
 upper = [1.2, 1.2, 1.2]
 cell = 0.1
-order = "quadratic"
+degree = "quadratic"
 [material.wall]
-model = "hencky"
+model = "elastic"
 young = "10 MPa"
 poisson = 0.3
 [[body]]
 material = "wall"
 surface = { triangles = BALL }
-subtract = [{ sphere = { center = [0, 0, 0], radius = 0.5 } }]
+subtract = [{ sphere = { centre = [0, 0, 0], radius = 0.5 } }]
 points_per_cell = 3
 [[traction]]
-sphere = { center = [0, 0, 0], radius = 0.5 }
+sphere = { centre = [0, 0, 0], radius = 0.5 }
 pressure = "1 kPa"
 ramp = 1.0
 [boundary]
@@ -358,7 +358,7 @@ fn a_hollow_sphere_under_pressure_inside_is_lames_by_a_sphere_and_by_triangles()
     let wall = (1.0 - 2.0 * poisson) * a + (1.0 + poisson) * b.powi(3) / (2.0 * a * a);
     let (moved, held) = (load * a.powi(3) * wall / (young * (b.powi(3) - a.powi(3))), load * PI * a * a / 4.0);
     let hollow = changed(HOLLOW, "BALL", &eighth(b, 24, true));
-    let sphere = "sphere = { center = [0, 0, 0], radius = 0.5 }\npressure";
+    let sphere = "sphere = { centre = [0, 0, 0], radius = 0.5 }\npressure";
     let triangles = format!("surface = {{ triangles = {} }}\npressure", eighth(a, 24, false));
     for (line, ranks) in [(sphere, 1), (&triangles, 2)] {
         let scratch = Scratch::with_case(&changed(&hollow, sphere, line));

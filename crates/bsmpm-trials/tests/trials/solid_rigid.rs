@@ -15,14 +15,14 @@ steps = 12
 lower = [0, 0]
 upper = [4, 2]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.sand]
 model = "mohr-coulomb"
 young = "1 MPa"
 poisson = 0.3
 unit_weight = "20 kN/m3"
-friction = 30
-dilation = 0
+friction_angle = 30
+dilation_angle = 0
 cohesion = "2 kPa"
 [[body]]
 material = "sand"
@@ -31,7 +31,7 @@ points_per_cell = 2
 [[rigid]]
 name = "block"
 polygon = [[1.5, 1], [2.5, 1], [2.5, 2], [1.5, 2]]
-friction = 0.3
+friction_coefficient = 0.3
 path = [[0.5, 0, -0.01], [1, 0.01, -0.01]]
 [boundary]
 left = "roller"
@@ -59,7 +59,7 @@ at = [2, 1]
 fn a_rigid_block_in_a_slice_is_that_of_plane_strain() {
     let mut slice = PLANE.to_owned();
     for (plane, solid) in [
-        ("geometry = \"plane-strain\"", "geometry = \"solid\""),
+        ("geometry = \"plane-strain\"", "geometry = \"3d\""),
         ("lower = [0, 0]\nupper = [4, 2]", "lower = [0, 0, 0]\nupper = [4, 0.25, 2]"),
         ("{ lower = [0, 0], upper = [4, 1] }", "{ lower = [0, 0, 0], upper = [4, 0.25, 1] }"),
         ("polygon = [[1.5, 1], [2.5, 1], [2.5, 2], [1.5, 2]]", "box = { lower = [1.5, -1, 1], upper = [2.5, 1, 2] }"),
@@ -108,12 +108,12 @@ fn sliding(friction: f64) -> String {
     let rows: Vec<String> =
         faces.into_iter().flat_map(|[a, b, c, d]| [triangle([a, b, c]), triangle([a, c, d])]).collect();
     format!(
-        "geometry = \"solid\"\n[analysis]\ntype = \"dynamic\"\nend = 0.5\ndt = 0.01\n\
-         [grid]\nlower = [0, 0, 0]\nupper = [6, 4, 5]\ncell = 0.25\norder = \"quadratic\"\n\
-         [material.rubber]\nmodel = \"hencky\"\nyoung = \"1 MPa\"\npoisson = 0.3\ndensity = 1000\n\
+        "geometry = \"3d\"\n[analysis]\ntype = \"dynamic\"\nend = 0.5\ndt = 0.01\n\
+         [grid]\nlower = [0, 0, 0]\nupper = [6, 4, 5]\ncell = 0.25\ndegree = \"quadratic\"\n\
+         [material.rubber]\nmodel = \"elastic\"\nyoung = \"1 MPa\"\npoisson = 0.3\ndensity = 1000\n\
          [[body]]\nmaterial = \"rubber\"\nsurface = {{ triangles = [{}] }}\npoints_per_cell = 2\n\
          [[rigid]]\nname = \"slope\"\nterrain = {{ top = [[-2, -2, 5.5], [-2, 6, 5.5], [10, -2, -0.5], [10, 6, -0.5]] }}\n\
-         friction = {friction}\n[gravity]\nacceleration = [0, 0, -9.81]\n\
+         friction_coefficient = {friction}\n[gravity]\nacceleration = [0, 0, -9.81]\n\
          [solver]\ntolerance = 1e-12\nforce_tolerance = 1e-9\n[output]\nevery = 0.25\n\
          [[history]]\nquantity = \"momentum\"\n[[history]]\nquantity = \"centre-of-mass\"\n\
          [[history]]\nquantity = \"rigid-force\"\nrigid = \"slope\"\n",
@@ -159,7 +159,7 @@ fn a_block_stays_on_rigid_terrain_that_rubs_more_than_it_falls() {
 
 /// Undrained clay, a quarter of it in the corner of two planes of symmetry, that a square of 2 m four cells wide loads.
 const CLAY: &str = r#"
-geometry = "solid"
+geometry = "3d"
 [analysis]
 type = "quasi-static"
 steps = 8
@@ -167,7 +167,7 @@ steps = 8
 lower = [0, 0, 0]
 upper = [3.5, 3.5, 3]
 cell = 0.5
-order = "quadratic"
+degree = "quadratic"
 [material.clay]
 model = "tresca"
 young = "100 MPa"
@@ -195,10 +195,10 @@ fn a_smooth_rigid_box_bears_what_a_smooth_footing_does() {
         scratch.direct(&["case.toml", "-q", "-o", "out"]).expect(0);
         at(&history(&scratch.path("out")), column, 1.0)
     };
-    let body = "[[rigid]]\nname = \"punch\"\nbox = { lower = [-1, -1, 2.5], upper = [1, 1, 3.5] }\nfriction = 0\n\
+    let body = "[[rigid]]\nname = \"punch\"\nbox = { lower = [-1, -1, 2.5], upper = [1, 1, 3.5] }\nfriction_coefficient = 0\n\
                 displacement = [0, 0, -0.0016]\n\
                 [[history]]\nquantity = \"rigid-force\"\nrigid = \"punch\"\nscale = 1e-3\n";
-    let footing = "[footing]\nrectangle = { lower = [0, 0, 2.5], upper = [1, 1, 2.5] }\nbase = \"smooth\"\n\
+    let footing = "[footing]\nrectangle = { lower = [0, 0, 2.5], upper = [1, 1, 2.5] }\ninterface = \"smooth\"\n\
                    displacement = [0, 0, -0.0016]\n[[history]]\nquantity = \"footing-pressure\"\nscale = 1e-3\n";
     let [body, footing] = [bears(body, "rigid-force-z"), bears(footing, "footing-pressure")];
     assert!((body / footing - 1.0).abs() < 0.03, "{body} c for {footing} c");
@@ -214,9 +214,9 @@ steps = 4
 lower = [0, 0]
 upper = [1.5, 1.3]
 cell = 0.1
-order = "quadratic"
+degree = "quadratic"
 [material.ground]
-model = "hencky"
+model = "elastic"
 young = "1 MPa"
 poisson = 0.3
 [[body]]
@@ -225,7 +225,7 @@ box = { lower = [0, 0], upper = [1.2, 1.2] }
 points_per_cell = 3
 [[rigid]]
 name = "ball"
-circle = { center = [0, 2.2], radius = 1 }
+circle = { centre = [0, 2.2], radius = 1 }
 displacement = [0, -0.04]
 [boundary]
 left = "roller"
@@ -239,14 +239,14 @@ rigid = "ball"
 fn a_sphere_pressed_into_a_quarter_of_a_block_is_the_axisymmetric_one() {
     let mut quarter = BALL.to_owned();
     for (round, solid) in [
-        ("geometry = \"axisymmetric\"", "geometry = \"solid\""),
+        ("geometry = \"axisymmetric\"", "geometry = \"3d\""),
         ("lower = [0, 0]\nupper = [1.5, 1.3]", "lower = [0, 0, 0]\nupper = [1.5, 1.5, 1.3]"),
         (
             "box = { lower = [0, 0], upper = [1.2, 1.2] }",
-            "extrude = { circle = { center = [0, 0], radius = 1.2 }, along = \"z\", from = 0, to = 1.2 }\nsubtract = [\
+            "extrude = { circle = { centre = [0, 0], radius = 1.2 }, along = \"z\", from = 0, to = 1.2 }\nsubtract = [\
              { box = { lower = [-2, -2, 0], upper = [0, 2, 1.2] } }, { box = { lower = [-2, -2, 0], upper = [2, 0, 1.2] } }]",
         ),
-        ("circle = { center = [0, 2.2], radius = 1 }", "sphere = { center = [0, 0, 2.2], radius = 1 }"),
+        ("circle = { centre = [0, 2.2], radius = 1 }", "sphere = { centre = [0, 0, 2.2], radius = 1 }"),
         ("[0, -0.04]", "[0, 0, -0.04]"),
         ("left = \"roller\"", "left = \"roller\"\nfront = \"roller\""),
     ] {

@@ -15,14 +15,14 @@ fn run(case: &str) -> Columns {
 
 /// The column of the plane's stages, one cell thick between rollers; once the load is gone a gate opens, too.
 fn switched() -> [String; 2] {
-    let plane = changed(SWITCHED, "release = [\"load\"]", "release = [\"load\"]\nboundary = { left = \"free\" }");
+    let plane = changed(SWITCHED, "deactivate = [\"load\"]", "deactivate = [\"load\"]\nboundary = { left = \"free\" }");
     let plane =
         changed(&plane, "tolerance = 1e-14\nforce_tolerance = 1e-9", "tolerance = 1e-20\nforce_tolerance = 1e-13");
     // As many points as a strip has in a cell: across the slice both have the same weights.
     let plane = changed(&plane, "points_per_cell = 3", "points_per_cell = 4");
     let mut solid = plane.clone();
     for (of_plane, of_solid) in [
-        ("geometry = \"plane-strain\"", "geometry = \"solid\""),
+        ("geometry = \"plane-strain\"", "geometry = \"3d\""),
         ("lower = [0, 0]\nupper = [2, 10]", "lower = [0, 0, 0]\nupper = [2, 0.5, 10]"),
         ("{ lower = [0, 0], upper = [2, 8] }", "{ lower = [0, 0, 0], upper = [2, 0.5, 8] }"),
         ("right = \"roller\"", "right = \"roller\"\nfront = \"roller\"\nback = \"roller\""),
@@ -83,7 +83,7 @@ fn a_shaken_slice_that_loses_sand_is_plane_strain() {
 
 /// kg, m, rad/s: a cube that spins about an axis askew to the grid.
 const SPINNING: &str = r#"
-geometry = "solid"
+geometry = "3d"
 [analysis]
 type = "dynamic"
 end = 0.1
@@ -93,9 +93,9 @@ mass = "consistent"
 lower = [-1, -1, -1]
 upper = [1, 1, 1]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.rubber]
-model = "hencky"
+model = "elastic"
 young = "10 MPa"
 poisson = 0.3
 density = 1000

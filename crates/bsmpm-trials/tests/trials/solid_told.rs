@@ -11,7 +11,7 @@ use bsmpm_io::table;
 
 /// 2 m of soil of 20 kN/m3 between smooth walls.
 const BLOCK: &str = r#"
-geometry = "solid"
+geometry = "3d"
 [analysis]
 type = "quasi-static"
 steps = 4
@@ -19,9 +19,9 @@ steps = 4
 lower = [0, 0, -1]
 upper = [0.75, 0.5, 2]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "1 GPa"
 poisson = 0.3
 unit_weight = "20 kN/m3"

@@ -18,14 +18,14 @@ dt = 0.02
 lower = [0, 0]
 upper = [4, 2]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.sand]
 model = "mohr-coulomb"
 young = "1 MPa"
 poisson = 0.3
 density = 2000
-friction = 25
-dilation = 0
+friction_angle = 25
+dilation_angle = 0
 cohesion = "1 kPa"
 drainage = "coupled"
 porosity = 0.4
@@ -74,7 +74,7 @@ quantity = "water-balance"
 fn slice(plane: &str) -> String {
     let mut slice = plane.to_owned();
     for (plane, solid) in [
-        ("geometry = \"plane-strain\"", "geometry = \"solid\""),
+        ("geometry = \"plane-strain\"", "geometry = \"3d\""),
         ("lower = [0, 0]\nupper = [4, 2]", "lower = [0, 0, 0]\nupper = [4, 0.25, 2]"),
         ("box = { lower = [0, 0], upper = [1, 1.5] }", "box = { lower = [0, 0, 0], upper = [1, 0.25, 1.5] }"),
         ("[0, -9.81]", "[0, 0, -9.81]"),
@@ -151,7 +151,7 @@ fn a_slice_into_which_it_rains_and_that_seeps_is_plane_strain() {
         &rain,
         "face = \"left\"",
         "from = [1, 0]\nto = [1, 1.5]\nseepage = true\n\
-         [[inflow]]\nfrom = [0, 1.5]\nto = [1, 1.5]\nrate = \"1e-4 m/s\"\nruns_off = true",
+         [[inflow]]\nfrom = [0, 1.5]\nto = [1, 1.5]\nrate = \"1e-4 m/s\"\nrunoff = true",
     );
     let solid = slice(&rain);
     let solid =
@@ -176,10 +176,10 @@ fn a_slice_into_which_it_rains_and_that_seeps_is_plane_strain() {
 #[test]
 fn a_slice_with_still_water_is_plane_strain() {
     let dry = changed(PLANE, "type = \"dynamic\"\nend = 0.3\ndt = 0.02", "type = \"quasi-static\"\nsteps = 3");
-    let dry = changed(&dry, "model = \"mohr-coulomb\"", "model = \"hencky\"");
+    let dry = changed(&dry, "model = \"mohr-coulomb\"", "model = \"elastic\"");
     let dry = changed(
         &dry,
-        "friction = 25\ndilation = 0\ncohesion = \"1 kPa\"\ndrainage = \"coupled\"\nporosity = 0.4\n",
+        "friction_angle = 25\ndilation_angle = 0\ncohesion = \"1 kPa\"\ndrainage = \"coupled\"\nporosity = 0.4\n",
         "",
     );
     let dry = changed(&dry, "permeability = [\"2e-4 m/s\", \"1e-4 m/s\"]\npermeability_law = \"kozeny-carman\"\n", "");
@@ -199,7 +199,7 @@ fn a_slice_with_still_water_is_plane_strain() {
 
 /// Rock as stiff as to hold still beside water that gives way, its pressure raised to 100 Pa on all six sides at once.
 const CUBE: &str = r#"
-geometry = "solid"
+geometry = "3d"
 [analysis]
 type = "consolidation"
 end = 0.08
@@ -210,9 +210,9 @@ dt_max = 2e-3
 lower = [0, 0, 0]
 upper = [1, 1, 1]
 cell = 0.16666666666666666
-order = "quadratic"
+degree = "quadratic"
 [material.rock]
-model = "hencky"
+model = "elastic"
 young = "10 GPa"
 poisson = 0
 drainage = "coupled"
@@ -296,9 +296,9 @@ fn a_cube_is_the_same_on_1_and_2_ranks_and_over_restarts() {
 #[test]
 fn level_ground_under_water_rests() {
     let table = run(r#"
-geometry = "solid"
+geometry = "3d"
 analysis = { type = "quasi-static", steps = 2 }
-grid = { lower = [-1, 0, 2], upper = [3, 2, 12], cell = 1, order = "quadratic" }
+grid = { lower = [-1, 0, 2], upper = [3, 2, 12], cell = 1, degree = "quadratic" }
 gravity = { acceleration = [0, 0, -9.81] }
 water = { level = 12 }
 initial = { k0 = 0.5, equilibrium = "plastic" }
@@ -310,7 +310,7 @@ model = "mohr-coulomb"
 young = "100 MPa"
 poisson = 0.3
 cohesion = "5 kPa"
-friction = 30.0
+friction_angle = 30.0
 unit_weight = "17 kN/m3"
 saturated_unit_weight = "20 kN/m3"
 [[body]]

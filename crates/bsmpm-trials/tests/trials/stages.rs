@@ -23,8 +23,8 @@ fn column(stages: &str, cell: f64) -> String {
     let bodies: String = (0..LIFTS).map(body).collect();
     format!(
         "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nend = 4\nsteps = 4\n\
-         [grid]\nlower = [0, 0]\nupper = [2, 10]\ncell = {cell}\norder = \"quadratic\"\n\
-         [material.soil]\nmodel = \"hencky\"\nyoung = \"100 GPa\"\npoisson = 0.25\nunit_weight = \"20 kN/m3\"\n\
+         [grid]\nlower = [0, 0]\nupper = [2, 10]\ncell = {cell}\ndegree = \"quadratic\"\n\
+         [material.soil]\nmodel = \"elastic\"\nyoung = \"100 GPa\"\npoisson = 0.25\nunit_weight = \"20 kN/m3\"\n\
          [gravity]\nacceleration = [0, -9.81]\n[boundary]\nbottom = \"fixed\"\nleft = \"roller\"\nright = \"roller\"\n\
          [solver]\ntolerance = 1e-14\nforce_tolerance = 1e-9\nbackground = 0\n\
          [[history]]\nquantity = \"mass\"\n[[history]]\nquantity = \"energy\"\n{bodies}{stages}"
@@ -68,8 +68,8 @@ fn an_embankment_in_lifts_settles_as_layers_that_are_placed_one_after_the_other(
 fn a_load_acts_on_what_a_stage_has_placed() {
     const LOAD: f64 = 1e6;
     let stages = "[[stage]]\nat = 1\nadd = [\"lift-1\", \"lift-2\", \"lift-3\"]\n\
-                  [[stage]]\nat = 2\napply = [\"traffic\"]\n\
-                  [[stage]]\nat = 3\nrelease = [\"traffic\"]\nremove = [\"lift-3\"]\n\
+                  [[stage]]\nat = 2\nactivate = [\"traffic\"]\n\
+                  [[stage]]\nat = 3\ndeactivate = [\"traffic\"]\nremove = [\"lift-3\"]\n\
                   [[traction]]\nname = \"traffic\"\nfrom = [0, 8]\nto = [2, 8]\npressure = \"1 MPa\"\n";
     let scratch = Scratch::with_case(&column(stages, 0.5));
     let out = |name: &str| scratch.path(name);
@@ -119,16 +119,16 @@ fn tunnel(share: f64) -> String {
     let corners: Vec<String> = (0..=24).map(corner).collect();
     format!(
         "geometry = \"plane-strain\"\nanalysis = {{ type = \"quasi-static\", end = 2, steps = 8 }}\n\
-         grid = {{ lower = [0, 0], upper = [8, 10.5], cell = 0.25, order = \"quadratic\" }}\n\
+         grid = {{ lower = [0, 0], upper = [8, 10.5], cell = 0.25, degree = \"quadratic\" }}\n\
          boundary = {{ bottom = \"fixed\", left = \"roller\", right = \"roller\" }}\n\
          gravity = {{ acceleration = [0, -9.81] }}\ninitial = {{ k0 = 1.0 }}\n\
-         [material.soil]\nmodel = \"hencky\"\nyoung = \"20 MPa\"\npoisson = 0.3\nunit_weight = {WEIGHT}\n\
+         [material.soil]\nmodel = \"elastic\"\nyoung = \"20 MPa\"\npoisson = 0.3\nunit_weight = {WEIGHT}\n\
          [[body]]\nmaterial = \"soil\"\nbox = {{ lower = [0, 0], upper = [8, 10] }}\npoints_per_cell = 3\n\
-         subtract = [{{ circle = {{ center = [0, 5], radius = 1 }} }}]\n\
+         subtract = [{{ circle = {{ centre = [0, 5], radius = 1 }} }}]\n\
          [[body]]\nname = \"plug\"\nmaterial = \"soil\"\npolygon = [{}]\npoints_per_cell = 3\n\
-         [[traction]]\nname = \"air\"\ncircle = {{ center = [0, 5], radius = 1 }}\n\
+         [[traction]]\nname = \"air\"\ncircle = {{ centre = [0, 5], radius = 1 }}\n\
          pressure = {{ value = 0, at_y = 10, per_metre = {} }}\n\
-         [[stage]]\nat = 1\nremove = [\"plug\"]\napply = [\"air\"]\n\
+         [[stage]]\nat = 1\nremove = [\"plug\"]\nactivate = [\"air\"]\n\
          [[history]]\nquantity = \"max-displacement\"\n[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n",
         corners.join(", "),
         share * WEIGHT
@@ -206,13 +206,13 @@ steps = 10
 lower = [0, 0]
 upper = [2, 10]
 cell = 0.5
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "100 MPa"
 poisson = 0.25
 [material.other]
-model = "hencky"
+model = "elastic"
 young = "200 MPa"
 poisson = 0.25
 [[body]]
@@ -242,18 +242,18 @@ components = "normal"
 [[stage]]
 name = "loaded"
 at = 1
-apply = ["load"]
+activate = ["load"]
 [[stage]]
 name = "held"
 at = 2
-apply = ["prop"]
+activate = ["prop"]
 materials = [{ from = "soil", to = "other" }]
 [[stage]]
 at = 3
-release = ["load"]
+deactivate = ["load"]
 [[stage]]
 at = 4
-release = ["prop"]
+deactivate = ["prop"]
 [[history]]
 quantity = "displacement"
 at = [1, 8]
@@ -318,14 +318,14 @@ fn a_gate_that_opens_lets_a_column_give_way() {
     let mut case = changed(SWITCHED, "bottom = \"fixed\"", "bottom = \"roller\"");
     case.replace_range(
         a + 1..b + 1,
-        "[[stage]]\nname = \"loaded\"\nat = 1\napply = [\"load\"]\n[[history]]\nquantity = \"reaction\"\nface = \"right\"\n\
+        "[[stage]]\nname = \"loaded\"\nat = 1\nactivate = [\"load\"]\n[[history]]\nquantity = \"reaction\"\nface = \"right\"\n\
          [[history]]\nquantity = \"displacement\"\nat = [2, 4]\nname = \"side\"\n\
          [[stage]]\nat = 2\nboundary = { right = \"free\" }\n",
     );
     let case = changed(
         &case,
-        "at = 4\nrelease = [\"prop\"]",
-        "at = 4\nboundary = { right = { friction = 0.0, lifts = false } }",
+        "at = 4\ndeactivate = [\"prop\"]",
+        "at = 4\nboundary = { right = { friction_coefficient = 0.0, separates = false } }",
     );
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
@@ -355,7 +355,7 @@ fn a_weaker_law_returns_the_stress_that_it_takes_over() {
     let weak = "model = \"von-mises\"\nyoung = \"200 MPa\"\nyield_stress = \"4 kPa\"\n";
     let found = run(&changed(
         SWITCHED,
-        "[material.other]\nmodel = \"hencky\"\nyoung = \"200 MPa\"\n",
+        "[material.other]\nmodel = \"elastic\"\nyoung = \"200 MPa\"\n",
         &format!("[material.other]\n{weak}"),
     ));
     let sides = |t: f64| ["stress-xx", "stress-yy"].map(|name| -at(&found, name, t) / PRESSURE);
@@ -370,16 +370,16 @@ fn a_weaker_law_returns_the_stress_that_it_takes_over() {
 /// flowed does not come back.
 #[test]
 fn a_stage_divides_the_strength_under_the_stress_that_is_there() {
-    let soil = "[material.soil]\nmodel = \"hencky\"\nyoung = \"100 MPa\"\npoisson = 0.25\n";
+    let soil = "[material.soil]\nmodel = \"elastic\"\nyoung = \"100 MPa\"\npoisson = 0.25\n";
     let yields =
         "[material.soil]\nmodel = \"von-mises\"\nyoung = \"100 MPa\"\npoisson = 0.25\nyield_stress = \"8 kPa\"\n";
     let case = changed(SWITCHED, soil, yields);
     let case = changed(
         &case,
-        "apply = [\"prop\"]\nmaterials = [{ from = \"soil\", to = \"other\" }]",
+        "activate = [\"prop\"]\nmaterials = [{ from = \"soil\", to = \"other\" }]",
         "strength_reduction = 2",
     );
-    let case = changed(&case, "at = 3\nrelease = [\"load\"]", "at = 3\nstrength_reduction = 1");
+    let case = changed(&case, "at = 3\ndeactivate = [\"load\"]", "at = 3\nstrength_reduction = 1");
     let a = case.find("[[stage]]\nat = 4").expect("the last stage");
     let b = case.find("[[history]]").expect("histories");
     let c = case.find("[[prescribed]]").expect("a prop");

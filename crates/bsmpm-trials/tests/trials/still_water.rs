@@ -16,13 +16,13 @@ steps = 4
 lower = [-1, 2]
 upper = [3, 12]
 cell = "1 m"
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
 model = "mohr-coulomb"
 young = "100 MPa"
 poisson = 0.3
 cohesion = "5 kPa"
-friction = 30.0
+friction_angle = 30.0
 unit_weight = "17 kN/m3"
 saturated_unit_weight = "20 kN/m3"
 [[body]]

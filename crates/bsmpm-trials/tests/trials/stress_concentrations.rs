@@ -12,13 +12,13 @@ analysis = { type = "quasi-static" }
 grid = { lower = [0.0, 0.0], upper = [11.0, 11.0] }
 boundary = { left = "roller", bottom = "roller" }
 [material.elastic]
-model = "hencky"
+model = "elastic"
 young = "20 MPa"
 poisson = 0.2
 [[body]]
 material = "elastic"
 box = { lower = [0.0, 0.0], upper = [10.0, 10.0] }
-subtract = [{ circle = { center = [0.0, 0.0], radius = 0.5 } }]
+subtract = [{ circle = { centre = [0.0, 0.0], radius = 0.5 } }]
 [[traction]]
 from = [10.0, 0.0]
 to = [10.0, 10.0]
@@ -45,7 +45,7 @@ const CAVITY: [&str; 5] = [
 /// section between them (Pilkey and Pilkey 2008, after Ling 1947), which is 1/0.9 of that.
 const NOTCH: [&str; 5] = [
     "grid.upper=[6.0, 11.0]",
-    "body.0={ material = \"elastic\", box = { lower = [0, 0], upper = [5, 10] }, subtract = [{ circle = { center = [5, 0], \
+    "body.0={ material = \"elastic\", box = { lower = [0, 0], upper = [5, 10] }, subtract = [{ circle = { centre = [5, 0], \
      radius = 0.5 } }] }",
     "traction=[{ from = [0.0, 10.0], to = [5.0, 10.0], stress = [0.0, 2e3], ramp = 1.0 }]",
     "history.0.at=[4.5, 0.0]",

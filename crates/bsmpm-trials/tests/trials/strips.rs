@@ -15,10 +15,10 @@ steps = 20
 lower = [0.0, 0.0]
 upper = [4.0, 1.5]
 cell  = "0.25 m"
-order = "quadratic"
+degree = "quadratic"
 
 [material.soil]
-model   = "hencky"
+model   = "elastic"
 young   = "10 MPa"
 poisson = 0.2
 
@@ -39,7 +39,7 @@ name = "plate"
 from = [1.5, 1.0]
 to   = [2.5, 1.0]
 path = [[0.2, 0.0, -0.004], [0.6, 0.008, -0.004], [0.75, 0.008, 0.02], [1.0, 0.008, -0.004]]
-components = { friction = 0.4 }
+components = { friction_coefficient = 0.4 }
 
 [[history]]
 quantity = "reaction"
@@ -142,7 +142,7 @@ fn a_strip_that_rubs_is_applied_and_released_by_stages_on_two_ranks_and_over_res
         DRAGGED,
         "path = [[0.2, 0.0, -0.004], [0.6, 0.008, -0.004], [0.75, 0.008, 0.02], [1.0, 0.008, -0.004]]",
         path,
-    ) + "[[stage]]\nat = 0.2\napply = [\"plate\"]\n[[stage]]\nat = 0.7\nrelease = [\"plate\"]\n";
+    ) + "[[stage]]\nat = 0.2\nactivate = [\"plate\"]\n[[stage]]\nat = 0.7\ndeactivate = [\"plate\"]\n";
     let scratch = Scratch::with_case(&staged);
     scratch.goes_on(2, &["3", "9", "16"]);
     scratch.direct(&["case.toml", "-q", "-o", "one"]).expect(0);
@@ -167,14 +167,14 @@ fn a_strip_that_rubs_is_applied_and_released_by_stages_on_two_ranks_and_over_res
 /// A smooth strip on clay whose strength follows the rate, in 40 steps.
 const RATED: &str = r#"geometry = "plane-strain"
 [analysis]
-type  = "quasi-static-in-time"
+type  = "quasi-static-rate"
 end   = "1000 s"
 steps = 40
 [grid]
 lower = [0.0, 0.0]
 upper = [5.0, 3.0]
 cell  = "250 mm"
-order = "quadratic"
+degree = "quadratic"
 [material.clay]
 model    = "sensitive-clay"
 young    = "1 GPa"
@@ -192,7 +192,7 @@ points_per_cell = 3
 from = [0.0, 2.5]
 to   = [1.0, 2.5]
 displacement = [0.0, -0.002]
-base = "smooth"
+interface = "smooth"
 [boundary]
 bottom = "fixed"
 left   = "roller"
@@ -258,10 +258,10 @@ fn a_base_motion_is_the_shaking_of_that_ground() {
             r#"
             geometry = "plane-strain"
             analysis = {{ type = "dynamic", end = 0.4, dt = {STEP} }}
-            grid = {{ lower = [-0.5, 0], upper = [3.5, 2.5], cell = {cell}, order = "quadratic" }}
+            grid = {{ lower = [-0.5, 0], upper = [3.5, 2.5], cell = {cell}, degree = "quadratic" }}
             {base}
             [material.soil]
-            model = "hencky"
+            model = "elastic"
             young = "1 MPa"
             poisson = 0.3
             density = 2000

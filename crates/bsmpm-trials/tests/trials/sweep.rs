@@ -77,7 +77,7 @@ fn runs_that_fail_end_nothing_and_what_is_there_is_kept() {
         "--vary",
         "grid.cell=20 mm,10 mm,5 mm",
         "--vary",
-        "grid.order=cubic,quadratic",
+        "grid.degree=cubic,quadratic",
         "--quantity",
         "runout@0.0151",
         "--quantity",
@@ -97,7 +97,7 @@ fn runs_that_fail_end_nothing_and_what_is_there_is_kept() {
     // Cells of 10 mm are good for a few per cent of a length of .2 m, and no two grids agree to rounding.
     assert!((1e-7..0.05).contains(&error(0)) && (1e-7..0.05).contains(&error(1)), "{coarse}");
     assert!(coarse["cpu_seconds"].as_f64().unwrap() > 0.0 && coarse["peak_memory"].as_u64().unwrap() > 1 << 20);
-    assert!(text.contains("cheapest within 10 % of all quantities: cell 10 mm, order quadratic"), "{text}");
+    assert!(text.contains("cheapest within 10 % of all quantities: cell 10 mm, degree quadratic"), "{text}");
 
     // Only the broken ones are tried again.
     let (_, _, again) = bench.sweep(&options);

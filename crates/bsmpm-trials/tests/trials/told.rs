@@ -16,10 +16,10 @@ steps = 2
 lower = [0.0, 0.0]
 upper = [2.0, 1.5]
 cell  = 0.25
-order = "quadratic"
+degree = "quadratic"
 
 [material.soil]
-model       = "hencky"
+model       = "elastic"
 young       = "10 MPa"
 poisson     = 0.3
 unit_weight = "20 kN/m3"
@@ -109,8 +109,11 @@ fn a_background_that_carries_the_body_is_told() {
 #[test]
 fn a_front_that_goes_back_is_told_with_what_to_do() {
     let case = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
-    let scratch =
-        Scratch::with_case(&changed(&case, "friction    = 21.9\n", "friction    = 21.9\nseparation  = \"closing\"\n"));
+    let scratch = Scratch::with_case(&changed(
+        &case,
+        "friction_angle    = 21.9\n",
+        "friction_angle    = 21.9\nseparation  = \"gap\"\n",
+    ));
     let set = [
         "case.toml",
         "--set",
@@ -131,7 +134,7 @@ fn a_front_that_goes_back_is_told_with_what_to_do() {
 
 #[test]
 fn the_advice_on_an_elastic_start_is_not_to_make_one() {
-    let weak = changed(LAYER, "model       = \"hencky\"", "model       = \"tresca\"\ncohesion    = \"0.5 kPa\"");
+    let weak = changed(LAYER, "model       = \"elastic\"", "model       = \"tresca\"\ncohesion    = \"0.5 kPa\"");
     let scratch = Scratch::with_case(&format!("{weak}\n[initial]\ngravity = \"elastic\"\n"));
     let told = scratch.direct(&["case.toml", "--max-steps", "1"]);
     let line = told.stderr.lines().find(|line| line.contains("unbalanced")).unwrap_or_default();

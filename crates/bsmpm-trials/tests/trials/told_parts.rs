@@ -18,17 +18,17 @@ steps = 5
 lower = [0.0, -1.0]
 upper = [2.0, 4.0]
 cell = 0.25
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
 model = "mohr-coulomb"
 young = "1 GPa"
 poisson = 0.3
-friction = 30
-dilation = 0
+friction_angle = 30
+dilation_angle = 0
 cohesion = "5 kPa"
 unit_weight = "20 kN/m3"
 [material.rock]
-model = "hencky"
+model = "elastic"
 young = "10 GPa"
 poisson = 0.2
 unit_weight = "25 kN/m3"

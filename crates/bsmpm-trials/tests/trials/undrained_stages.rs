@@ -20,13 +20,13 @@ fn column() -> String {
     let [first, second] = LOADS.map(load);
     format!(
         "geometry = \"plane-strain\"\n[analysis]\ntype = \"consolidation\"\nend = \"4.3 s\"\ndt = \"5 ms\"\n\
-         [grid]\nlower = [0, 0]\nupper = [0.1, 1]\ncell = 0.05\norder = \"quadratic\"\n\
-         [material.soil]\nmodel = \"hencky\"\nyoung = {MODULUS}\npoisson = 0\ndrainage = \"coupled\"\n\
+         [grid]\nlower = [0, 0]\nupper = [0.1, 1]\ncell = 0.05\ndegree = \"quadratic\"\n\
+         [material.soil]\nmodel = \"elastic\"\nyoung = {MODULUS}\npoisson = 0\ndrainage = \"coupled\"\n\
          porosity = {POROSITY}\npermeability = {PERMEABILITY}\n[water]\nbulk = {WATER}\n\
          [[body]]\nmaterial = \"soil\"\nbox = {{ lower = [0, 0], upper = [0.1, 1] }}\npoints_per_cell = 3\n\
          [boundary]\nbottom = \"fixed\"\nleft = \"roller\"\nright = \"roller\"\n\
          [[drain]]\nname = \"top\"\nsurface = true\n[[traction]]\n{first}[[traction]]\nname = \"more\"\n{second}\
-         [[stage]]\nat = \"4 s\"\napply = [\"more\"]\n[solver]\ntolerance = 1e-12\nforce_tolerance = 1e-8\n\
+         [[stage]]\nat = \"4 s\"\nactivate = [\"more\"]\n[solver]\ntolerance = 1e-12\nforce_tolerance = 1e-8\n\
          [[history]]\nquantity = \"excess-pressure\"\nname = \"bottom\"\nat = [0.025, 0.025]\n\
          [[history]]\nquantity = \"displacement\"\nname = \"top\"\nat = [0.05, 1]\n"
     )
@@ -77,9 +77,9 @@ dt = "5 ms"
 lower = [0, 0]
 upper = [0.1, 1]
 cell = 0.05
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = 1e8
 poisson = 0
 unit_weight = "20 kN/m3"
@@ -172,14 +172,14 @@ fn pressed(stage: &str) -> String {
     let pressed = "pressure = \"100 kPa\"\nramp = 1\n";
     format!(
         "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nend = 2\nsteps = 8\n\
-         [grid]\nlower = [0, 0]\nupper = [1.5, 1.5]\ncell = 0.25\norder = \"quadratic\"\n\
-         [material.drained]\nmodel = \"mohr-coulomb\"\nyoung = \"2 GPa\"\npoisson = 0.3\nfriction = 25\ncohesion = 0\n\
+         [grid]\nlower = [0, 0]\nupper = [1.5, 1.5]\ncell = 0.25\ndegree = \"quadratic\"\n\
+         [material.drained]\nmodel = \"mohr-coulomb\"\nyoung = \"2 GPa\"\npoisson = 0.3\nfriction_angle = 25\ncohesion = 0\n\
          [material.undrained]\nmodel = \"tresca\"\nyoung = \"2 GPa\"\npoisson = 0.49\ncohesion = \"30 kPa\"\n\
          [[body]]\nmaterial = \"drained\"\nbox = {{ lower = [0, 0], upper = [1, 1] }}\npoints_per_cell = 3\n\
          [boundary]\nbottom = \"roller\"\nleft = \"roller\"\n\
          [[traction]]\nfrom = [0, 1]\nto = [1, 1]\n{pressed}[[traction]]\nfrom = [1, 0]\nto = [1, 1]\n{pressed}\
-         [footing]\nname = \"plate\"\nbase = \"smooth\"\nfrom = [0, 1]\nto = [1, 1]\n\
-         path = [[0, 0, 0], [1, 0, 0], [2, 0, -2e-4]]\n[[stage]]\nat = 1\napply = [\"plate\"]\n{stage}\
+         [footing]\nname = \"plate\"\ninterface = \"smooth\"\nfrom = [0, 1]\nto = [1, 1]\n\
+         path = [[0, 0, 0], [1, 0, 0], [2, 0, -2e-4]]\n[[stage]]\nat = 1\nactivate = [\"plate\"]\n{stage}\
          [[history]]\nquantity = \"stress\"\nat = [0.5, 0.5]\n"
     )
 }

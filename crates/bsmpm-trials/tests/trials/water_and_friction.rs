@@ -11,10 +11,10 @@ geometry = "plane-strain"
 analysis = { type = "quasi-static", steps = 5 }
 gravity  = { acceleration = [0.0, -9.81] }
 initial  = { k0 = 0.3 }
-boundary = { bottom = { friction = 0.4 } }
-grid     = { lower = [0.0, 0.0], upper = [8.0, 3.0], cell = CELL, order = "quadratic" }
+boundary = { bottom = { friction_coefficient = 0.4 } }
+grid     = { lower = [0.0, 0.0], upper = [8.0, 3.0], cell = CELL, degree = "quadratic" }
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = "10 MPa"
 poisson = 0.3
 unit_weight = "18 kN/m3"
@@ -40,7 +40,10 @@ name = "base"
 
 /// The same soil between two sides: its base moves up along a side with friction.
 const SIDE: [[&str; 2]; 3] = [
-    ["boundary = { bottom = { friction = 0.4 } }", "boundary = { left = { friction = 0.4 }, right = \"roller\" }"],
+    [
+        "boundary = { bottom = { friction_coefficient = 0.4 } }",
+        "boundary = { left = { friction_coefficient = 0.4 }, right = \"roller\" }",
+    ],
     ["face = \"left\"\ndisplacement = [0.02, 0.0]", "face = \"bottom\"\ndisplacement = [0.0, 0.001]"],
     ["face = \"bottom\"\nname = \"base\"", "face = \"left\"\nname = \"side\""],
 ];
@@ -88,7 +91,7 @@ fn a_side_has_the_friction_of_its_effective_normal_force() {
 const ON_A_BASE: [[&str; 2]; 4] = [
     ["steps = 5", "steps = 10"],
     ["acceleration = [0.0, -9.81]", "acceleration = [0.0, -9.81], ramp = 0.4"],
-    ["initial  = { k0 = 0.3 }\nboundary = { bottom = { friction = 0.4 } }\n", ""],
+    ["initial  = { k0 = 0.3 }\nboundary = { bottom = { friction_coefficient = 0.4 } }\n", ""],
     ["box = { lower = [0.0, 0.0], upper = [4.0, 1.0] }", "box = { lower = [0.0, 0.5], upper = [4.0, 1.5] }"],
 ];
 const WALL: [[&str; 2]; 2] = [
@@ -97,8 +100,8 @@ const WALL: [[&str; 2]; 2] = [
 ];
 const BASE: &str = "[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\nname = \"base\"\n";
 const STRIP: &str = "[[prescribed]]\nname = \"base\"\nfrom = [0.0, 0.5]\nto = [4.0, 0.5]\ndisplacement = [0.0, 0.0]\n\
-                     components = { friction = 0.4 }\n[[history]]\nquantity = \"reaction\"\nof = \"base\"\nname = \"base\"\n";
-const RIGID: &str = "[[rigid]]\nname = \"base\"\nfriction = 0.4\n\
+                     components = { friction_coefficient = 0.4 }\n[[history]]\nquantity = \"reaction\"\nof = \"base\"\nname = \"base\"\n";
+const RIGID: &str = "[[rigid]]\nname = \"base\"\nfriction_coefficient = 0.4\n\
                      polygon = [[-0.5, 0.0], [8.5, 0.0], [8.5, 0.5], [-0.5, 0.5]]\n\
                      [[history]]\nquantity = \"rigid-force\"\nrigid = \"base\"\nname = \"base\"\n";
 

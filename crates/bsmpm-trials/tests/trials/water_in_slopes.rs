@@ -46,7 +46,7 @@ fn seepage_along_an_infinite_slope_leaves_the_share_of_its_buoyant_weight() {
     let found = ["0.5", "0.25"].map(|cell| {
         let set = [
             "analysis={ type = \"consolidation\", end = \"50 s\", steps = 5 }",
-            "material.clay={ model = \"hencky\", young = \"100 MPa\", poisson = 0.3, unit_weight = \"20 kN/m3\", \
+            "material.clay={ model = \"elastic\", young = \"100 MPa\", poisson = 0.3, unit_weight = \"20 kN/m3\", \
              drainage = \"coupled\", porosity = 0.4, permeability = \"1e-2 m/s\" }",
             "gravity={ acceleration = [3.3552176056, -9.2183847172] }",
             "drain=[{ from = [0.0, 2.0], to = [40.0, 2.0] }]",
@@ -70,8 +70,8 @@ fn a_line_along_an_infinite_slope_presses_as_its_depth_straight_below() {
     let rise = LENGTH * INCLINED.to_radians().tan();
     let found = ["0.5", "0.25"].map(|cell| {
         let set = [
-            format!("grid={{ lower = [-1, 0], upper = [41, 18], cell = {cell}, order = \"quadratic\" }}"),
-            "material={ soil = { model = \"hencky\", young = 1e8, poisson = 0.3, unit_weight = 2e4 }, rock = { model = \
+            format!("grid={{ lower = [-1, 0], upper = [41, 18], cell = {cell}, degree = \"quadratic\" }}"),
+            "material={ soil = { model = \"elastic\", young = 1e8, poisson = 0.3, unit_weight = 2e4 }, rock = { model = \
              \"hencky\", young = 1e10, poisson = 0.3, unit_weight = 2e4 } }"
                 .to_owned(),
             format!(

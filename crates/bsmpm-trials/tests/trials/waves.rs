@@ -46,7 +46,7 @@ upper = [{length:?}, {cell:?}]
 cell = {cell:?}
 order = "{order}"
 [material.elastic]
-model = "hencky"
+model = "elastic"
 young = 6.48e6
 poisson = 0.0
 density = 1800.0
@@ -197,9 +197,9 @@ steps = 600
 lower = [0.0, 0.0]
 upper = [{:?}, {:?}]
 cell = {cell:?}
-order = "quadratic"
+degree = "quadratic"
 [material.soil]
-model = "hencky"
+model = "elastic"
 young = {SKELETON:?}
 poisson = 0.0
 density = {DENSITY:?}

@@ -137,9 +137,9 @@ impl Constants {
 impl Law for CamClay {
     type Flow<R: Real> = CamClayReturn<R>;
     const PARAMETERS: &'static [Variable] = &[
-        Variable::new("kappa", "-"),
-        Variable::new("lambda", "-"),
-        Variable::new("critical_ratio", "-"),
+        Variable::new("kappa_star", "-"),
+        Variable::new("lambda_star", "-"),
+        Variable::new("critical_state_ratio", "-"),
         Variable::new("preconsolidation", "Pa"),
         Variable::new("ocr", "-"),
     ];

@@ -187,7 +187,7 @@ pub enum Separation {
 
 /// Parameters of laws with friction: φ, ψ, c.
 pub(super) const FRICTIONAL: [Variable; 3] =
-    [Variable::new("friction", "rad"), Variable::new("dilation", "rad"), Variable::new("cohesion", "Pa")];
+    [Variable::new("friction_angle", "rad"), Variable::new("dilation_angle", "rad"), Variable::new("cohesion", "Pa")];
 
 /// These parameters, with ψ at most φ.
 pub(super) fn frictional(parameters: &[f64]) -> [f64; 3] {

@@ -197,11 +197,11 @@ impl SofteningMohrCoulomb {
 impl Law for SofteningMohrCoulomb {
     type Flow<R: Real> = SofteningReturn<R>;
     const PARAMETERS: &'static [Variable] = &[
-        Variable::new("friction", "rad"),
-        Variable::new("dilation", "rad"),
+        Variable::new("friction_angle", "rad"),
+        Variable::new("dilation_angle", "rad"),
         Variable::new("cohesion", "Pa"),
-        Variable::new("residual_friction", "rad"),
-        Variable::new("residual_dilation", "rad"),
+        Variable::new("residual_friction_angle", "rad"),
+        Variable::new("residual_dilation_angle", "rad"),
         Variable::new("residual_cohesion", "Pa"),
         Variable::new("softening_strain", "-"),
     ];

@@ -173,8 +173,8 @@ pub fn second_order_works<K, const D: usize>(
     Some([total[0], total[1]])
 }
 
-/// Magnitudes of the works of the points' stresses in a step over all points of all ranks, J: `Σ V0 |τ : Δε|`. Unlike the
-/// works of nodal forces, these do not vanish in a body whose internal forces balance at each node.
+/// Magnitudes of the works of the points' stresses in a step over all points of all ranks, J: `Σ V0 |τ : Δε|`. Unlike
+/// the works of nodal forces, these do not vanish in a body whose internal forces balance at each node.
 pub fn stress_work<K: Kinematics<D>, const D: usize>(
     trial: &Trial<K, D>,
     points: &Points<D>,

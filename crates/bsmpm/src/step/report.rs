@@ -66,9 +66,9 @@ pub struct StepReport {
     pub rigid: Vec<RigidReport>,
     /// what every rigid strip did
     pub strips: Vec<StripReport>,
-    /// J  work (u - w) . B (u - w) on the soft background, w the displacement that it does not resist; and the larger of
-    /// the magnitudes of the works f_int u of all nodes and components, the background's among them, and of the works of
-    /// the points' stresses. Only with a background.
+    /// J  work (u - w) . B (u - w) on the soft background, w the displacement that it does not resist; and the larger
+    /// of the magnitudes of the works f_int u of all nodes and components, the background's among them, and of the
+    /// works of the points' stresses. Only with a background.
     pub background: Option<[f64; 2]>,
     /// largest force of the background on a node over the RMS force of the nodes, with a background and without
     /// prescribed motions in the step

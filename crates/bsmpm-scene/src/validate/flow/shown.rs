@@ -120,7 +120,7 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some(grid) = root.record("grid").filter(|_| case.grid.order == 1) {
         let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
-        grid.error("order", message, report);
+        grid.error("degree", message, report);
     }
     let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
@@ -162,7 +162,7 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
         let Some(law) = record.word::<LawName>("model") else { continue };
         if flow.soils[number].is_none() && !drains_where_they_meet(case, flow, number) {
             report.warn(format!(
-                "material.{name}: drainage = \"given\" beside soil in which water flows: nothing crosses from that soil into it \
+                "material.{name}: drainage = \"hydrostatic\" beside soil in which water flows: nothing crosses from that soil into it \
                  but through a [[drain]] where they meet, and there is none"
             ));
         }
@@ -412,7 +412,7 @@ fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
             report.warn(format!(
                 "material.{}: up to {most:.2} m of it are above the water table, its pores stay full, and suction of up to \
                  {:.0} kPa, as of water that hangs there, holds it together without limit: a slope of it had a factor of safety \
-                 11 % above that under the table alone; give it a retention, or drainage = \"given\" where it is dry",
+                 11 % above that under the table alone; give it a retention, or drainage = \"hydrostatic\" where it is dry",
                 named.name,
                 1e-3 * most * water.unit_weight
             ));

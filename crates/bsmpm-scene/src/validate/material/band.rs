@@ -38,7 +38,7 @@ fn falls(material: &Material) -> bool {
         let place = law.parameter_names().iter().position(|parameter| parameter.name == key);
         place.map_or(0.0, |place| numbers[place])
     };
-    ["friction", "cohesion"].into_iter().any(|key| of(key) > of(&format!("residual_{key}")))
+    ["friction_angle", "cohesion"].into_iter().any(|key| of(key) > of(&format!("residual_{key}")))
 }
 
 /// Of the splines, the method and the geometry.

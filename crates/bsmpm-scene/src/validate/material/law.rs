@@ -97,6 +97,9 @@ pub(super) fn law(
         }
         values.push((key, profile));
     }
+    if model == LawName::CamClay {
+        star(record, &mut values, report)?;
+    }
     let mut parameters = Parameters { model, values };
     if model == LawName::SensitiveClay {
         remould(record, &mut parameters, report)?;
@@ -162,12 +165,42 @@ fn remould(record: &Record, law: &mut Parameters, report: &mut Report<'_>) -> Op
     Some(())
 }
 
+/// The slopes in ln v over ln p', from those in v over ln p' where they are given instead; `None` after an error.
+fn star(record: &Record, values: &mut Vec<(&'static str, Profile)>, report: &mut Report<'_>) -> Option<()> {
+    const SLOPES: [[&str; 2]; 2] = [["kappa_star", "kappa"], ["lambda_star", "lambda"]];
+    let of_volume = SLOPES.into_iter().find(|[_, slope]| record.gives(slope));
+    if let Some([_, slope]) = of_volume.filter(|_| !record.gives("void_ratio")) {
+        let message = "is the slope of the specific volume v over ln p' and needs the void ratio at the start. Give void_ratio \
+                       = e0 too, or kappa_star and lambda_star, the slopes of ln v: kappa_star = kappa/(1 + e0). Earlier versions \
+                       read kappa and lambda as these.";
+        record.error(slope, message, report);
+        return None;
+    }
+    for [starred, slope] in SLOPES {
+        if !record.gives(starred) && !record.gives(slope) {
+            let message = format!("missing; model \"modified-cam-clay\" needs it, or {slope} and void_ratio");
+            report.error(record.origin, &record.path_of(starred), message);
+            return None;
+        }
+        if record.gives(slope) {
+            let value = record.number(slope)? / (1.0 + record.number("void_ratio")?);
+            report.note(record.path_of(starred), value.to_string(), format!("{slope} / (1 + void_ratio)"));
+            values.push((starred, Profile::constant(value)));
+        }
+    }
+    Some(())
+}
+
 /// What modified Cam-clay asks for beyond the ranges of its keys, and where its linear moduli hold; `None` after an
 /// error.
 fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) -> Option<()> {
-    let [kappa, lambda] = ["kappa", "lambda"].map(|key| law.of(key).value);
+    let [kappa, lambda] = ["kappa_star", "lambda_star"].map(|key| law.of(key).value);
     if lambda <= kappa {
-        record.error("lambda", format!("{lambda} is out of range; allowed: lambda > kappa = {kappa}"), report);
+        record.error(
+            "lambda_star",
+            format!("{lambda} is out of range; allowed: lambda_star > kappa_star = {kappa}"),
+            report,
+        );
         return None;
     }
     if !record.gives("preconsolidation") && !record.gives("ocr") {
@@ -184,7 +217,7 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
             "young and poisson hold at p = {at:.6} Pa; below {:.6} Pa Poisson's ratio is negative",
             at * (1.0 - 2.0 * poisson) / (1.0 + poisson)
         ),
-        "K = p (1 - kappa)/kappa, G constant",
+        "K = p (1 - kappa*)/kappa*, G constant",
     );
     if record.number("ocr").is_some_and(|ocr| ocr > 2.0) {
         report.warn(format!(
@@ -203,7 +236,7 @@ pub(super) const CELLS_OF_BAND: f64 = 2.0;
 /// The plastic strain of cells for that of a shear band, so that a band does the same work in any (crack band: Bažant
 /// and Oh, 1983). `None` after an error.
 fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<()> {
-    let falls = ["friction", "cohesion"].map(|key| (law.of(key), law.of(&format!("residual_{key}"))));
+    let falls = ["friction_angle", "cohesion"].map(|key| (law.of(key), law.of(&format!("residual_{key}"))));
     let falls = falls.into_iter().any(|(first, last)| first.value > last.value);
     if !falls {
         report.note(&record.path, "hardens", "no residual strength is below the first one: shear does not localise");
@@ -265,35 +298,37 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
         let profile = law.of(key);
         profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()))
     };
-    let (friction, dilation, cohesion) = (bounds("friction"), bounds("dilation"), bounds("cohesion"));
-    let last = ["residual_dilation", "residual_friction"].map(|key| law.of(key));
+    let (friction, dilation, cohesion) = (bounds("friction_angle"), bounds("dilation_angle"), bounds("cohesion"));
+    let last = ["residual_dilation_angle", "residual_friction_angle"].map(|key| law.of(key));
     let ends = layer.map_or([0.0, 0.0], |layer| [layer.heights.start, layer.heights.end]);
     if let Some(y) = ends.into_iter().find(|&y| last[0].at(y) > last[1].at(y)) {
         let [dilation, friction] = last.map(|profile| profile.at(y));
-        let message =
-            format!("{dilation} is out of range; allowed: 0 <= residual_dilation <= residual_friction = {friction}");
-        record.error("residual_dilation", message, report);
+        let message = format!(
+            "{dilation} is out of range; allowed: 0 <= residual_dilation_angle <= residual_friction_angle = {friction}"
+        );
+        record.error("residual_dilation_angle", message, report);
         return None;
     }
     if dilation.1 > friction.1 {
-        let message = format!("{} is out of range; allowed: 0 <= dilation <= friction = {}", dilation.1, friction.1);
-        record.error("dilation", message, report);
+        let message =
+            format!("{} is out of range; allowed: 0 <= dilation_angle <= friction_angle = {}", dilation.1, friction.1);
+        record.error("dilation_angle", message, report);
         return None;
     }
     if dilation.1 > friction.0 {
-        let path = record.path_of("dilation");
+        let path = record.path_of("dilation_angle");
         report.warn(format!("{path}: {} is above the friction angle in places, and lowered to it there", dilation.1));
     }
     if friction.1 == 0.0 && cohesion.1 == 0.0 {
         report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
     }
-    if !matches!(law.model, LawName::Tresca | LawName::SensitiveClay) && !record.gives("dilation") {
-        report.note(record.path_of("dilation"), "0.0", "default: plastic flow without change of volume");
+    if !matches!(law.model, LawName::Tresca | LawName::SensitiveClay) && !record.gives("dilation_angle") {
+        report.note(record.path_of("dilation_angle"), "0.0", "default: plastic flow without change of volume");
     }
     // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi
     // until it has closed, and without friction there is no apex.
     if record.word("separation") == Some(Separation::Closing) && (friction.0 <= 0.0 || cohesion.1 > 0.0) {
-        let message = "\"closing\" needs friction and no cohesion: a gap is what opens where the stress is zero";
+        let message = "\"gap\" needs friction and no cohesion: a gap is what opens where the stress is zero";
         record.error("separation", message, report);
     }
     Some(())
@@ -307,13 +342,13 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
     let uniform = Parameters { model: law.model, values: uniform };
     let Some(Material::DruckerPrager(cone)) = uniform.material(record, elastic, (None, 1.0)) else { return };
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
-        if !record.gives("match") {
+        if !record.gives("fit") {
             report.warn(format!(
                 "{}: not given: the cone is matched in plane strain, which this is not, and has {:.1} % of mohr-coulomb's \
                  strength in triaxial compression, {:.1} % in extension, at the same mean stress; give \"outer\" (all of \
                  it in compression), \"inner\" (all in extension) or \"plane-strain\" (nowhere more); use mohr-coulomb \
                  where that is meant",
-                record.path_of("match"),
+                record.path_of("fit"),
                 100.0 * cone.strength_over(Match::Outer),
                 100.0 * cone.strength_over(Match::Inner)
             ));
@@ -323,8 +358,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
     let ratio = cone.strength_in_plane_strain();
     if (ratio - 1.0).abs() > 0.005 {
         report.warn(format!(
-            "{}: in plane strain this cone has {:.1} % of mohr-coulomb's strength (with match = \"plane-strain\" and \
-             dilation = friction it has all); use mohr-coulomb where that is meant",
+            "{}: in plane strain this cone has {:.1} % of mohr-coulomb's strength (with fit = \"plane-strain\" and \
+             dilation_angle = friction_angle it has all); use mohr-coulomb where that is meant",
             record.path,
             100.0 * ratio
         ));
@@ -333,5 +368,5 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
 
 /// Tresca's angles may be written if they are zero.
 fn zero_angle(record: &Record, model: LawName, key: &str) -> bool {
-    model == LawName::Tresca && matches!(key, "friction" | "dilation") && record.number(key) == Some(0.0)
+    model == LawName::Tresca && matches!(key, "friction_angle" | "dilation_angle") && record.number(key) == Some(0.0)
 }

@@ -63,7 +63,7 @@ pub(super) fn read(
 
 fn shape(record: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
     if let Some(shape) = record.record("sphere").filter(|_| record.gives("sphere")) {
-        return Some(RigidSolid::Sphere { center: shape.vector("center")?, radius: shape.number("radius")? });
+        return Some(RigidSolid::Sphere { center: shape.vector("centre")?, radius: shape.number("radius")? });
     }
     if let Some(shape) = record.record("revolve").filter(|_| record.gives("revolve")) {
         return revolved(shape, report);

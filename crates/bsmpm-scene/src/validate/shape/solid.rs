@@ -91,7 +91,7 @@ pub(in super::super) fn key(record: &Record) -> &'static str {
 /// A shape in the case's coordinates.
 fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
     if let Some(sphere) = record.record("sphere").filter(|_| record.gives("sphere")) {
-        return Some(SolidShape::Sphere { center: sphere.vector("center")?, radius: sphere.number("radius")? });
+        return Some(SolidShape::Sphere { center: sphere.vector("centre")?, radius: sphere.number("radius")? });
     }
     if let Some(shape) = record.record("extrude").filter(|_| record.gives("extrude")) {
         let outline = section(shape, report)?;
