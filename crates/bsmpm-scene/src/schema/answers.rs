@@ -26,8 +26,11 @@ const fn anywhere(names: &'static [&'static str], text: &'static str) -> Answer 
 }
 
 const ANSWERS: &[Answer] = &[
-    symbol(&["E", "Eref", "E50", "E_ref", "modulus"], "Young's modulus is `young`"),
-    symbol(&["nu", "v", "poisson_ratio", "poissons_ratio"], "Poisson's ratio is `poisson`"),
+    symbol(
+        &["E", "Eref", "E50", "E_ref", "modulus"],
+        "Young's modulus is `young`, one constant; of E50 take the value at the stress of the problem",
+    ),
+    symbol(&["nu", "poisson_ratio", "poissons_ratio"], "Poisson's ratio is `poisson`"),
     symbol(&["phi", "phi_prime", "phi'", "friction_angle_deg"], "the friction angle is `friction_angle`, in degrees"),
     symbol(&["psi", "psi'"], "the dilation angle is `dilation_angle`, in degrees"),
     symbol(&["c", "c'", "c_prime"], "the cohesion is `cohesion`"),
@@ -44,11 +47,21 @@ const ANSWERS: &[Answer] = &[
         "the void ratio is `void_ratio` (modified-cam-clay), and the porosity e0/(1 + e0) is `porosity`",
     ),
     symbol(&["n", "n0"], "the porosity is `porosity`"),
-    symbol(&["k", "kx", "ky", "ksat", "k_sat"], "the hydraulic conductivity is `permeability`"),
+    symbol(
+        &["k", "kx", "ky", "ksat", "k_sat"],
+        "the hydraulic conductivity (m/s) is `permeability`, one value or one along each axis",
+    ),
     symbol(&["M"], "the slope of the critical state line is `critical_state_ratio`"),
     symbol(&["OCR"], "the overconsolidation ratio is `ocr`"),
-    symbol(&["K0", "K_0", "k_0", "K0nc"], "the coefficient of earth pressure at rest is `k0`"),
-    symbol(&["pc", "p_c", "pc0", "POP"], "the preconsolidation pressure is `preconsolidation`"),
+    symbol(
+        &["K0", "K_0", "k_0", "K0nc"],
+        "the ratio of horizontal to vertical effective stress at the start is `k0`, in overconsolidated soil not the normally \
+             consolidated one",
+    ),
+    symbol(
+        &["pc", "p_c", "pc0"],
+        "the isotropic preconsolidation pressure is `preconsolidation`, the overconsolidation ratio `ocr`",
+    ),
     symbol(
         &["G", "shear_modulus", "K", "bulk_modulus"],
         "the elastic moduli are `young` and `poisson`: E = 2 G (1 + nu) = 3 K (1 - 2 nu)",
@@ -56,10 +69,13 @@ const ANSWERS: &[Answer] = &[
     symbol(&["St", "S_t"], "the sensitivity is `sensitivity` (sensitive-clay)"),
     symbol(
         &["tension_cutoff", "tension_cut_off", "tensile_strength"],
-        "a tension cut-off is not available: the cone of mohr-coulomb ends at c/tan(phi). Use a smaller `cohesion`, or separation = \"gap\" \
-         without cohesion",
+        "a tension cut-off is not available: the apex of the Mohr-Coulomb pyramid is at a mean tension of c / tan(phi). A smaller \
+         `cohesion` lowers it, and the shear strength with it; without cohesion use separation = \"gap\"",
     ),
-    symbol(&["adhesion"], "an adhesion is not available: interfaces have a `friction_coefficient` only"),
+    symbol(
+        &["adhesion"],
+        "an adhesion is not available: an interface is \"smooth\", \"rough\" or has a `friction_coefficient`",
+    ),
     top(
         &["groundwater", "phreatic", "water_table", "pore_water"],
         "water in the ground is `[water]`, with `level` or `line`",
@@ -69,7 +85,8 @@ const ANSWERS: &[Answer] = &[
             "anchor", "anchors", "beam", "beams", "plate", "plates", "pile", "piles", "geogrid", "geogrids", "strut",
             "wall", "walls",
         ],
-        "structural elements are not available: use a stiff elastic [[body]], or [[rigid]]",
+        "structural elements are not available: use an elastic [[body]] with the same bending stiffness, or [[rigid]]; anchors and \
+         geogrids have no equivalent",
     ),
     top(&["bodies"], "bodies are `[[body]]`, one table each"),
     top(&["materials"], "materials are `[material.NAME]`, one table each"),
@@ -79,7 +96,7 @@ const ANSWERS: &[Answer] = &[
     top(&["mesh"], "the background grid is `[grid]`"),
     top(
         &["earthquake", "seismic"],
-        "an earthquake is `[shaking]`; for pseudo-static analysis incline `gravity.acceleration`",
+        "an earthquake is `[shaking]`; a pseudo-static analysis adds the horizontal acceleration to `gravity.acceleration`",
     ),
     anywhere(
         &["probe"],
@@ -87,9 +104,12 @@ const ANSWERS: &[Answer] = &[
     ),
     anywhere(
         &["regularisation", "regularization"],
-        "what is meant is `band_width`, the width of the shear band that softening_strain is of",
+        "what is meant is `band_width`, the width of the shear band for which softening_strain was determined",
     ),
-    anywhere(&["traction_path"], "what is meant is `stress_path`, and of a pressure `pressure_path`"),
+    anywhere(
+        &["traction_path"],
+        "what is meant is `stress_path` for a traction and `pressure_path` for a pressure, both histories in time",
+    ),
 ];
 
 /// What to write for a key that a table does not have, if others than its author have typed it before.

@@ -14,7 +14,7 @@ pub const LANGUAGE: &[Row] = &[
         "[footing]",
         "[[anchor]]\n[footing]",
         "anchor",
-        "structural elements are not available: use a stiff elastic [[body]]",
+        "structural elements are not available: use an elastic [[body]]",
     ),
     row("cohesion    = 2e4", "cohesion = 2e4\nE = 1", "material.clay.E", "Young's modulus is `young`").down(1),
     row("cohesion    = 2e4", "cohesion = 2e4\nnu = 1", "material.clay.nu", "Poisson's ratio is `poisson`").down(1),
