@@ -7,7 +7,7 @@ mod frame;
 mod save;
 mod stage;
 mod start;
-mod told;
+mod step_warnings;
 
 use crate::cli::Arguments;
 use crate::fault::Fault;

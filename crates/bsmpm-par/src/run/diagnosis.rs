@@ -138,7 +138,7 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             let rigid = &case.rigid[*body];
             let cause = match rigid.friction > 0.0 {
                 true => format!(
-                    "its friction (friction_coefficient = {}) is used up, or it does not touch the soil",
+                    "its friction (friction_coefficient = {}) is fully mobilised, or it does not touch the soil",
                     rigid.friction
                 ),
                 false => "it has no friction, or does not touch the soil".to_owned(),

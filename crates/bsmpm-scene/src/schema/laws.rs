@@ -353,7 +353,12 @@ pub(crate) static MATERIAL: Table = Table {
             "viscous stress beside that of the law (dynamic); none unless given",
         ),
     ],
-    exclusive: &[one_of(&["unit_weight", "density"], false), one_of(&["preconsolidation", "ocr"], false), one_of(&["kappa_star", "kappa"], false), one_of(&["lambda_star", "lambda"], false)],
+    exclusive: &[
+        one_of(&["unit_weight", "density"], false),
+        one_of(&["preconsolidation", "ocr"], false),
+        one_of(&["kappa_star", "kappa"], false),
+        one_of(&["lambda_star", "lambda"], false),
+    ],
 };
 
 static RETENTION: Table = Table {

@@ -26,7 +26,7 @@ pub(super) const SUPPORT: Kind = ChoiceOr(Support::WORDS, &CONTACT);
 
 static CONTACT: Table = Table {
     header: "FACE = { friction_coefficient, separates }",
-    doc: "A face that material slides along with Coulomb friction, and comes off",
+    doc: "A face in frictional contact (Coulomb) with the material, which may separate from it",
     keys: &[
         key(
             "friction_coefficient",
@@ -39,7 +39,8 @@ static CONTACT: Table = Table {
             "separates",
             Flag,
             Default("true"),
-            "whether material comes off the face; false: it is held there both ways, and nothing rubs where it pulls",
+            "whether the material may separate from the face; false: the normal component stays fixed, and there is no friction \
+             under tension",
         )
         .renamed_from(&["lifts"]),
     ],
@@ -66,7 +67,7 @@ pub(super) static FOOTING: Table = Table {
             "interface",
             ChoiceOr(Base::WORDS, &RUBS),
             Default("\"smooth\""),
-            "\"smooth\" holds the normal component, \"rough\" all; or a table: it rubs, and lets go",
+            "\"smooth\" fixes the normal component, \"rough\" all components; or a table: frictional contact",
         )
         .renamed_from(&["base"]),
         key("name", Name, Optional, "what stages and histories call it; \"footing\" unless given"),
@@ -110,7 +111,7 @@ pub(super) static PRESCRIBED: Table = Table {
             "components",
             ChoiceOr(Components::WORDS, &RUBS),
             Default("\"all\""),
-            "what is held; of a segment also what rubs",
+            "which components are prescribed; or a table, of a segment: frictional contact",
         ),
         key("name", Name, Optional, "what stages and histories call it"),
     ],
@@ -123,7 +124,7 @@ pub(super) static PRESCRIBED: Table = Table {
 
 static RUBS: Table = Table {
     header: "STRIP = { friction_coefficient, separates }",
-    doc: "A strip that material slides along with Coulomb friction, and comes off; bodies lie on one side of it",
+    doc: "A strip in frictional contact (Coulomb) with the material on one side of it, which may separate from it",
     keys: &[
         key(
             "friction_coefficient",
@@ -136,7 +137,8 @@ static RUBS: Table = Table {
             "separates",
             Flag,
             Default("true"),
-            "whether material comes off the strip; false: it is held there both ways, and nothing rubs where it pulls",
+            "whether the material may separate from the strip; false: the normal component stays fixed, and there is no friction \
+             under tension",
         )
         .renamed_from(&["lifts"]),
     ],
@@ -302,7 +304,7 @@ pub(super) static INITIAL: Table = Table {
 
 pub(super) static STRESS_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of a stress",
-    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; of a \
+    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; in \
           3-D the height is z",
     keys: &[
         key("value", Quantity(In::Stress, Range::ANY), Required, "at the height at_y"),
@@ -314,7 +316,7 @@ pub(super) static STRESS_PROFILE: Table = Table {
 
 static STRESSES_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of stresses",
-    doc: "value + per_metre (at_y - y) along the axes: linear everywhere, above at_y too, by the height at the start; of a \
+    doc: "value + per_metre (at_y - y) along the axes: linear everywhere, above at_y too, by the height at the start; in \
           3-D the height is z",
     keys: &[
         key("value", Vector(In::Stress, Range::ANY), Required, "along the axes, at the height at_y"),
@@ -326,7 +328,7 @@ static STRESSES_PROFILE: Table = Table {
 
 pub(super) static ANGLE_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of an angle",
-    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; of a \
+    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; in \
           3-D the height is z",
     keys: &[
         key("value", Quantity(In::Angle, Range::ANY), Required, "at the height at_y"),

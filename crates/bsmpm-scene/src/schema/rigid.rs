@@ -16,7 +16,7 @@ static GROUND: Table = Table {
 
 pub(super) static RIGID: Table = Table {
     header: "[[rigid]]",
-    doc: "A rigid body that pushes and rubs the soil and does not pull it, on a given way or moved by forces",
+    doc: "A rigid body in frictional contact with the soil, without tension, with a prescribed motion or moved by forces",
     keys: &[
         key("name", Name, Required, "what histories call it"),
         key("polygon", body::POLYGON, Optional, "its corners at the start, in either direction"),

@@ -46,7 +46,7 @@ pub static ROOT: Table = Table {
         key("check", Tables(&output::CHECK), Optional, "bounds that are verified at the end"),
         key("footing", Kind::Table(&loads::FOOTING), Optional, "a rigid strip that moves"),
         key("prescribed", Tables(&loads::PRESCRIBED), Optional, "motion of a face or segment"),
-        key("rigid", Tables(&rigid::RIGID), Optional, "a rigid body that pushes and rubs the soil"),
+        key("rigid", Tables(&rigid::RIGID), Optional, "a rigid body in frictional contact with the soil"),
         key("traction", Tables(&loads::TRACTION), Optional, "stress on the body's surface"),
         key("point_load", Tables(&loads::POINT_LOAD), Optional, "a force at a point"),
         key("strength_reduction", Kind::Table(&loads::REDUCTION), Optional, "strength divided by a factor"),
@@ -172,8 +172,7 @@ static GRAVITY: Table = Table {
 
 static BOUNDARY: Table = Table {
     header: "[boundary]",
-    doc: "What every face of the grid does to the bodies: holds, rubs, absorbs, follows a free field, lets out, or \
-          nothing",
+    doc: "Supports at the faces of the grid: fixed, roller, contact, absorbing, free field, outflow, or free",
     keys: &[
         key("left", loads::SUPPORT, Default("\"free\""), "face at the lowest x"),
         key("right", loads::SUPPORT, Default("\"free\""), "face at the highest x"),

@@ -65,14 +65,15 @@ fn a_block_that_nothing_holds_is_named() {
     scratch
         .mpirun(1, &["case.toml", "-q", "-o", "slides"])
         .expect(80)
-        .says_once("(friction_coefficient = 0.1) is used up");
+        .says_once("(friction_coefficient = 0.1) is fully mobilised");
 }
 
 /// A block of 36 kPa on sand and clay with weight, whose pressure spreads it.
 #[test]
 fn a_block_settles_on_plastic_ground_that_spreads() {
     let soil = "model   = \"elastic\"\nyoung   = \"10 MPa\"\npoisson = 0.45";
-    let plastic = "model = \"mohr-coulomb\"\nyoung = \"10 MPa\"\npoisson = 0.45\nfriction_angle = 20\ndilation_angle = 0\ncohesion = \"10 kPa\"\n\
+    let plastic = "model = \"mohr-coulomb\"\nyoung = \"10 MPa\"\npoisson = 0.45\nfriction_angle = 20\n\
+                   dilation_angle = 0\ncohesion = \"10 kPa\"\n\
                    unit_weight = \"18 kN/m3\"";
     let case = changed(&changed(BLOCK, soil, plastic), "MU", "0.1");
     let case = changed(&case, "-20e3", "-36e3") + "[gravity]\nacceleration = [0.0, -9.81]\nramp = 1.0\n";

@@ -1,4 +1,4 @@
-//! What a run tells of a step that was accepted: warnings of what no other number shows.
+//! Warnings about a step that was accepted, which no other number shows.
 
 use super::Run;
 use crate::checkpoint::Outlet;
