@@ -237,7 +237,7 @@ fn coarse(path: &str, times: impl Iterator<Item = f64> + Clone, dt: Option<f64>,
 /// Says that the first number of a row, called `name`, is not larger than that of the row before.
 pub(super) fn not_increasing(name: &str, value: f64, before: f64) -> String {
     format!(
-        "E0402: in this row {name} = {value} is not larger than {before} in the row before. Sort the rows, each value once."
+        "E0402: {name} = {value} in this row is not larger than {before} in the row before. Sort the rows, each value once."
     )
 }
 
@@ -298,8 +298,8 @@ pub(super) fn initial(
     let dims = root.word::<Geometry>("geometry")?.dims();
     if let Some(gravity) = gravity.filter(|of| !of.acts_down(dims, regime)) {
         let message = format!(
-            "E0406: gravity {:?} is not vertical. Initial stresses by k0 are in equilibrium under vertical gravity only. Use \
-             initial.gravity = \"elastic\".",
+            "E0406: gravity {:?} does not act straight down. Initial stresses by k0 balance vertical gravity only. Correct it, or \
+             use initial.gravity = \"elastic\".",
             &gravity.acceleration[..dims]
         );
         root.record("gravity")?.error("acceleration", message, report);

@@ -98,9 +98,9 @@ fn free(record: &Record, report: &mut Report<'_>) -> Option<[bool; 3]> {
             let words = || RigidMotion::WORDS.words();
             let allowed: Vec<&str> = words().collect();
             let message = format!(
-                "E0422: `{name}` is not a motion of a rigid body{}. Use {}.",
-                hint(name, words()),
-                allowed.join(", ")
+                "E0422: `{name}` is not a motion of a rigid body. Use {}{}.",
+                allowed.join(", "),
+                hint(name, words())
             );
             record.error("free", message, report);
             return None;
@@ -391,7 +391,7 @@ fn inside(case: &Case, (rigid, body): (usize, usize), at: &str) -> String {
         None => ("at the start".to_owned(), ""),
         Some(stage) if stage.add.contains(&body) => (format!("when a stage adds it at t = {}", stage.at), ""),
         Some(stage) => {
-            (format!("when a stage adds the rigid body at t = {}", stage.at), ", or remove it in that stage")
+            (format!("when a stage adds the rigid body at t = {}", stage.at), ", or remove that body in this stage")
         }
     };
     format!(

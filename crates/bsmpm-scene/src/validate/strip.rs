@@ -176,8 +176,9 @@ fn stays_inside(record: &Record, site: Site, path: &MotionPath, around: AroundSt
     let beyond =
         |(t, u): &(f64, [f64; 3])| Some((*t, corners.into_iter().find_map(|end| is_beyond(grid, at(end, *u)))?));
     if let Some((t, outside)) = path.rows.iter().find_map(beyond) {
-        let message =
-            format!("E0419: the motion leaves the grid: at t = {t} {outside}. Reduce the motion, or enlarge the grid.");
+        let message = format!(
+            "E0419: the motion leaves the grid: at t = {t}, {outside}. Reduce the motion, or enlarge the grid."
+        );
         record.error(motion(record), message, report);
     }
 }
@@ -186,9 +187,9 @@ fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_
     let outward = |u: f64| if face.upper { u > 0.0 } else { u < 0.0 };
     if let Some((t, u)) = path.rows.iter().find(|(_, u)| outward(u[face.axis])) {
         let message = format!(
-            "E0420: the face has moved out of the grid at t = {t}, by {:?} m. A face can move inward or along itself. Reverse the \
-             motion.",
-            &u[..]
+            "E0420: the face has moved out of the grid by {} m at t = {t}. A face can move inward or along itself only. Reverse \
+             the motion.",
+            u[face.axis].abs()
         );
         record.error(motion(record), message, report);
     }

@@ -12,8 +12,7 @@ pub const STAGES: &[Row] = &[
     row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "is not there yet").down(1),
     row("add  = [\"fill\"]", "activate = [\"fill\"]", "stage.0.activate", "there is no [[traction]]"),
     row("add  = [\"fill\"]", "activate = [\"plough\"]", "stage.0.activate", "plough has moved before it acts"),
-    row("add  = [\"fill\"]", "activate = [\"pipe\"]", "rigid.1.start_velocity", "a stage applies it later, at rest")
-        .down(47),
+    row("add  = [\"fill\"]", "activate = [\"pipe\"]", "rigid.1.start_velocity", "E0430").down(47),
     row(
         "add  = [\"fill\"]",
         "materials = [{ from = \"sand\", to = \"clai\" }]",
@@ -73,7 +72,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3\n[[stage]]\nat = 0.5\nactivate = [\"wall\"]\n\
          [[rigid]]\nname = \"wall\"\npolygon = [[1, 0], [1.5, 0], [1.5, 2], [1, 2]]",
         "rigid.0.polygon",
-        "at t = 0.5, when a stage applies it, body.0 is in it",
+        "E0431 .. body.0 .. when a stage adds the rigid body at t = 0.5",
     )
     .down(6),
     row(

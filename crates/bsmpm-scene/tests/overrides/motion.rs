@@ -45,7 +45,7 @@ fn a_free_body_at_the_edge_of_the_grid_is_warned_of() {
              free = [\"x\", \"y\", \"rotation\"]\nstart_velocity = [{velocity}, 0.0]\n"
         );
         let warnings = valid(&disc, &["boundary.bottom=fixed"]).warnings;
-        warnings.iter().filter(|warning| warning.contains("0.000 m from the face left of the grid")).count()
+        warnings.iter().filter(|warning| warning.contains("0.000 m from boundary `left`")).count()
     };
     assert_eq!([rigid("-1.0"), rigid("1.0"), rigid("0.0")], [1, 0, 0]);
 }
