@@ -194,7 +194,7 @@ fn where_water_fills_ground_that_moves_through_lines_they_are_told_of() {
     let loses = |text: &str| lines(text).2.iter().any(|told| told.contains("it loses volume"));
     let strip = format!("{wet}{STRIP}");
     assert_eq!(lines(&strip).0, [vec![6, 10], vec![]]);
-    assert!(!loses(&strip), ".2 of a cell");
+    assert!(!loses(&strip), "0.2 of a cell");
     let rubs =
         |text: &str| lines(text).2.iter().any(|told| told.contains("material.soft has friction and does not drain"));
     let law = ["model = \"tresca\"", "cohesion = 1e3"];

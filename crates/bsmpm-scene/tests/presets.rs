@@ -32,7 +32,7 @@ fn every_word_fills_in_another_discretisation_of_the_same_scene() {
         assert!(draft.3 >= standard.3 && standard.3 > reference.3);
         assert!(draft.4 > standard.4 && standard.4 > reference.4);
     }
-    // The shorter side of the column is .1 m high, that of the slope 10 m, and the strip is half of one 2 m wide.
+    // The shorter side of the column is 0.1 m high, that of the slope 10 m, and the strip is half of one 2 m wide.
     let cells = |text, word| of(text, word).0;
     assert_eq!([cells(COLUMN, "draft"), cells(COLUMN, "standard"), cells(COLUMN, "reference")], [55, 110, 220]);
     assert_eq!([cells(SLOPE, "draft"), cells(SLOPE, "standard"), cells(SLOPE, "reference")], [40, 80, 160]);
@@ -58,7 +58,7 @@ fn steps_follow_the_shear_wave_the_motion_or_the_least_number() {
     assert!((column.analysis.dt / graded.analysis.dt - 2.0_f64.sqrt()).abs() < 0.01);
     let steps = |case: &Case| (case.analysis.end / case.analysis.dt).round();
     assert_eq!(steps(&valid(SLOPE, &["accuracy=draft"])), 10.0);
-    // 2 m down in tenths of cells of .25 m; the fastest part of a path counts, up to the end.
+    // 2 m down in tenths of cells of 0.25 m; the fastest part of a path counts, up to the end.
     assert_eq!(steps(&valid(FOOTING, &["accuracy=draft"])), 80.0);
     let path = "footing.path=[[0.5, 0.0, -2.0], [1.0, 0.0, 0.0]]";
     assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", path])), 160.0);
@@ -132,7 +132,7 @@ fn the_effective_text_is_complete_and_stays_the_same() {
 
 #[test]
 fn cells_fit_between_faces_that_stay() {
-    // .55 m between rollers, where 27.5 cells of 20 mm would be.
+    // 0.55 m between rollers, where 27.5 cells of 20 mm would be.
     let case = valid(COLUMN, &["body.0.box.upper=[0.2, 0.333]", "grid.upper=[0.55, 0.4]", "accuracy=draft"]);
     let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
     assert_eq!((x.cells(), y.shortest()), (28, 0.02));
@@ -375,7 +375,7 @@ fn cells_of_what_softens_in_bands_of_a_given_width_are_equal_squares() {
         )
     };
     let oblong = |case: &Case| case.grid.axes[0].longest().max(case.grid.axes[1].longest()) / case.grid.shortest();
-    // Whole along both axes: 10 m and 4.3 m in 23 and 10 cells would be .4348 by .43 m.
+    // Whole along both axes: 10 m and 4.3 m in 23 and 10 cells would be 0.4348 by 0.43 m.
     let flat = ["accuracy=draft", "body.0.box.upper=[10.0, 4.3]", "grid.upper=[10.0, 4.3]", "boundary.top=roller"];
     assert!(oblong(&valid(COLUMN, &flat)) > 1.01);
     let case = valid(COLUMN, &[&flat[..], &[&soft("rods")]].concat());

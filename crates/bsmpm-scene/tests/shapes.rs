@@ -275,7 +275,7 @@ fn a_cell_without_a_place_inside_has_one_point() {
 
 #[test]
 fn the_one_point_of_a_cap_is_its_centroid() {
-    // What a circle has above y = 12 where no place of the lattice is: chord 2 m, height .2 m.
+    // What a circle has above y = 12 where no place of the lattice is: chord 2 m, height 0.2 m.
     let radius: f64 = (1.0 + 0.2 * 0.2) / (2.0 * 0.2);
     let circle = format!("circle = {{ centre = [12.5, {:?}], radius = {radius:?} }}", 12.2 - radius);
     let grid = "lower = [0, 0]\nupper = [40, 20]\ncell = [5.0, 4.0]";

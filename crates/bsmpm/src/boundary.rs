@@ -93,7 +93,7 @@ pub struct Boundary<const D: usize> {
     pub loads: Vec<Load<D>>,
     /// Rigid bodies.
     pub rigid: Vec<RigidBody<D>>,
-    /// Per material, parts of a cell that its points reach to each side at the start: .5 over their number along an
+    /// Per material, parts of a cell that its points reach to each side at the start: 0.5 over their number along an
     /// axis; half a cell where it is not told. For faces that material comes off, and the water's level.
     pub reach: Vec<f64>,
 }

@@ -68,7 +68,7 @@ fn strips_hold_and_load_a_quasi_static_body() {
 
 #[test]
 fn strips_and_loads_start_within_half_a_spacing_of_points() {
-    // The block's points are .25 m apart: its top is at 2.5 m. A strip may start with a part of it beyond the body.
+    // The block's points are 0.25 m apart: its top is at 2.5 m. A strip may start with a part of it beyond the body.
     let near = ["footing.from=[1.25, 2.62]", "footing.to=[1.75, 2.62]"];
     assert!(doubts(FULL, &near).is_empty());
     assert!(doubts(FULL, &["footing.from=[0.9, 2.5]", "footing.to=[2.3, 2.5]"]).is_empty());

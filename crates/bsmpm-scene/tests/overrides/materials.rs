@@ -154,7 +154,7 @@ fn layers_by_height_and_reduced_strength() {
 fn strength_that_falls_in_a_stage_takes_the_friction_of_rigid_bodies_and_strips_with_it() {
     let base = "footing.interface={ friction_coefficient = 0.5 }";
     let case = valid(FULL, &[base, "stage.0.strength_reduction=2.5"]);
-    // Of the start, and from .25 s on.
+    // Of the start, and from 0.25 s on.
     let friction = |t: f64| {
         let boundary = bsmpm_scene::model::model_at::<PlaneStrain, 2>(&case, t).unwrap().boundary;
         [boundary.rigid[0].friction, boundary.strips[0].contact.expect("it rubs").law.friction]

@@ -280,7 +280,7 @@ fn weight_that_comes_at_once_and_soft_soil_are_mended_and_told() {
     let (said, found, _) = of(&["gravity.ramp=0.0", "initial.k0=0.5"]);
     assert!(said.contains("note: the case begins with a stress ([initial])"), "{said}");
     assert_eq!(found["elastic_displacement"], as_it_is["elastic_displacement"]);
-    // The weight of 10 m over E: .2 % as it is, 2 % with a tenth of E.
+    // The weight of 10 m over E: 0.2 % as it is, 2 % with a tenth of E.
     let (said, found, run) = of(&["material.soil.young=1e7"]);
     assert!(
         said.contains("note: the trials have 10 times the case's stiffness") && said.contains("E = 10 MPa, times 10")

@@ -9,8 +9,8 @@ use std::time::Duration;
 use crate::quasi_static::FOOTING;
 use crate::still::Still;
 
-/// The solver: it notes what it was asked for and hands out the run, as far as t = .475 where it is to stop, and with
-/// .8 times the penetration where it is to be stiffer.
+/// The solver: it notes what it was asked for and hands out the run, as far as t = 0.475 where it is to stop, and with
+/// 0.8 times the penetration where it is to be stiffer.
 const STUB: &str = r#"#!/bin/sh
 echo "$@" >> calls.txt
 case "$*" in *explode*) echo 'it blew up'; exit 70;; esac
@@ -240,7 +240,7 @@ case  = "case.toml"
 depth = "full"
 
 [[study.row]]
-quantity  = "time where it is .5 deep"
+quantity  = "time where it is 0.5 deep"
 run       = "half"
 column    = "time"
 where     = { column = "penetration", value = 0.51 }

@@ -13,7 +13,7 @@ use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
 
-/// Height of Hencky's confined column under rho0 g l0 / M = .4, M the oedometric modulus, over its first one.
+/// Height of Hencky's confined column under rho0 g l0 / M = 0.4, M the oedometric modulus, over its first one.
 const SETTLED: f64 = 0.853_305_216_7;
 
 /// Error of the height of a confined column of 20 cells, gravity in ten steps, over its length; or the physics' reason,
@@ -73,13 +73,13 @@ fn march(scene: &mut Scene<PlaneStrain, 2>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// p/c of the coarse footing at z/B = .1.
+/// p/c of the coarse footing at z/B = 0.1.
 pub fn footing(poisson: f64, method: &'static str) -> Found {
     let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
     run.found(|run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))
 }
 
-/// Root mean square of the pressure about the planes of neighbouring cells, under the footing at z/B = .1, over the
+/// Root mean square of the pressure about the planes of neighbouring cells, under the footing at z/B = 0.1, over the
 /// mean of its absolute value.
 pub fn checkerboard(poisson: f64, method: &'static str) -> Found {
     let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
@@ -91,7 +91,7 @@ pub fn checkerboard(poisson: f64, method: &'static str) -> Found {
     })
 }
 
-/// Iterations of the footing with this Poisson's ratio over those with .3.
+/// Iterations of the footing with this Poisson's ratio over those with 0.3.
 pub fn iterations(poisson: f64, method: &'static str) -> Found {
     let [many, few] = [poisson, 0.3].map(|poisson| {
         let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
@@ -100,7 +100,7 @@ pub fn iterations(poisson: f64, method: &'static str) -> Found {
     Found::Figure(many / few, format!("{many} for {few}"))
 }
 
-/// A cantilever 8 m long and 1 m thick with a small force at its end: deflection with this ratio over that with .495,
+/// A cantilever 8 m long and 1 m thick with a small force at its end: deflection with this ratio over that with 0.495,
 /// both with the same E / (1 - nu^2), less one.
 pub fn bending(poisson: f64, method: &'static str) -> Found {
     let run = |poisson: f64| {

@@ -84,7 +84,7 @@ fn a_body_of_revolution_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
     assert_eq!(units, ["kg", "N", "N", "kg m/s", "J"].map(Some));
     let of = |name: &str, t: f64| at(&table, name, t);
     assert!((of("mass", 0.06) / (1800.0 * PI) - 1.0).abs() < 1e-12);
-    // k0 leaves .8 % in so few cells.
+    // k0 leaves 0.8 % in so few cells.
     assert!((of("reaction-y", 0.0) / (1800.0 * PI * 9.81) - 1.0).abs() < 0.01, "{}", of("reaction-y", 0.0));
     assert!(of("rigid-force-y", 0.06) > 100.0 && of("rigid-work", 0.06) > 0.0);
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| of(name, 0.06).abs());

@@ -180,7 +180,7 @@ fn ground_that_leaves_a_drained_face_is_told_of() {
     assert!(surface.is_empty(), "{surface:?}");
 }
 
-/// Under F-bar permeability and closure go by J-bar: by the points' own J pores at the drain close at T = .19.
+/// Under F-bar permeability and closure go by J-bar: by the points' own J pores at the drain close at T = 0.19.
 #[test]
 fn a_load_of_half_the_stiffness_leaves_pores_open_under_f_bar() {
     let scratch = Scratch::new();
@@ -258,11 +258,11 @@ fn nearly_incompressible_clay_as_undrained_soil_takes_a_third_of_the_iterations(
     keys.extend(["analysis.end=0.25 s", "output.times=[\"0.25 s\"]"].map(str::to_owned));
     let (undrained, few) = evaluations(&keys);
     assert!(few < many / 3.0, "{few} {many}");
-    assert!((undrained / load - 1.0).abs() < 0.12, "{undrained} {load}"); // coarse cells: 3 % with .25 m
+    assert!((undrained / load - 1.0).abs() < 0.12, "{undrained} {load}"); // coarse cells: 3 % with 0.25 m
 }
 
 /// A month of flood at a levee: what seeps out in the end against Casagrande (1937), who knows neither a fringe that
-/// conducts above the line nor the suction in it: +6.3 % in cells of 1 m, +5.3 of .25 m. On two ranks, and in parts,
+/// conducts above the line nor the suction in it: +6.3 % in cells of 1 m, +5.3 of 0.25 m. On two ranks, and in parts,
 /// the same.
 #[test]
 fn a_river_that_rises_seeps_through_a_levee() {
@@ -281,7 +281,7 @@ fn a_river_that_rises_seeps_through_a_levee() {
     let last = times.len() - 1;
     let rate = (seeped[last] - seeped[from]) / (times[last] - times[from]);
     let (k, height, slope) = (1e-5, 4.0, 0.5_f64.atan());
-    // From a point of the level that is .3 of the wetted bank before it.
+    // From a point of the level that is 0.3 of the wetted bank before it.
     let way = (24.0 - 8.0 + 0.3 * 8.0) / slope.cos();
     let seeps = way - (way.powi(2) - (height / slope.sin()).powi(2)).sqrt();
     let expected = k * seeps * slope.sin() * slope.tan();

@@ -104,7 +104,7 @@ fn value(scratch: &Scratch, column: &str) -> f64 {
 }
 
 /// The steps in which the whole wedge yields begin so nearly balanced that no later energy is small beside their first
-/// one: they ended with 80 at .84 and .10 of the wall's way although the forces balanced a hundred times better than
+/// one: they ended with 80 at 0.84 and 0.10 of the wall's way although the forces balanced a hundred times better than
 /// asked.
 #[test]
 fn a_wall_that_moves_away_has_rankines_active_thrust() {

@@ -71,7 +71,7 @@ fn ground_beside_a_free_field_is_the_same_on_any_number_of_ranks_and_over_restar
     }
     agree(&scratch.path("whole3"), &scratch.path("whole1"));
     let found = history(&scratch.path("whole1"));
-    // Earth pressure at rest of both layers, k0 = .5.
+    // Earth pressure at rest of both layers, k0 = 0.5.
     let [upper, lower] = [1800.0, 2000.0].map(|density| 9.81 * density);
     let at_rest = 0.5 * (0.5 * upper * 4.0 + upper * 4.0 + 0.5 * lower * 4.0);
     assert!((at(&found, "reaction-x", 0.0) / at_rest - 1.0).abs() < 0.1, "{}", at(&found, "reaction-x", 0.0));

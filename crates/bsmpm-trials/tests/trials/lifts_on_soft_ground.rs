@@ -272,7 +272,7 @@ fn a_lift_comes_with_the_suction_of_its_time() {
     let told = manifest(&scratch.path("whole")).warnings;
     assert!(told.iter().any(|told| told.contains("stage.0.add: there is no drain on body.1")), "{told:?}");
     let found = history(&scratch.path("whole"));
-    // Under its own weight what pores hold bears little: p is near that of still water, gamma_w (.45 - .875) m.
+    // Under its own weight what pores hold bears little: p is near that of still water, gamma_w (0.45 - 0.875) m.
     let (suction, still) = (at(&found, "within", 0.255), 9810.0 * (0.45 - 0.875));
     println!("{suction} Pa, of still water {still}");
     assert!((suction / still - 1.0).abs() < 0.01, "{suction}, {still}");

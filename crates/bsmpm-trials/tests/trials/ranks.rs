@@ -353,6 +353,6 @@ fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks_whose_slabs_follow_it() {
         *history.get("runout").unwrap().last().unwrap()
     });
     assert!(runouts[0] > 0.36, "{runouts:?}");
-    // Measured 3e-14 m at .3 s and 5e-12 m at .607 s.
+    // Measured 3e-14 m at 0.3 s and 5e-12 m at 0.607 s.
     assert!(runouts.iter().all(|runout| (runout - runouts[0]).abs() < 1e-9), "{runouts:?}");
 }

@@ -17,7 +17,7 @@ fn run(case: &str, set: &[&str]) -> bsmpm_io::table::Columns {
 }
 
 /// Janssen (1895), after each lift, with K of grain that stays elastic and of grain that yields at the walls: there
-/// Mohr's circle of radius p sin(phi) meets the wall's friction, tan(delta) = .4. Cells of .5 m: 2.2 and 4.2 %.
+/// Mohr's circle of radius p sin(phi) meets the wall's friction, tan(delta) = 0.4. Cells of 0.5 m: 2.2 and 4.2 %.
 #[test]
 fn what_presses_on_the_bottom_of_a_silo_is_janssens() {
     let (friction, grain) = (0.4_f64, 0.5_f64);

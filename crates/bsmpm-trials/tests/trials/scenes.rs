@@ -152,7 +152,7 @@ fn nothing_moves_under_its_own_stress_at_the_start() {
     assert!(moved.iter().all(|&moved| moved < 1e-6), "{moved:?}"); // the layer settles by 2 cm under gravity
 }
 
-/// A weightless elastic block of 7 x 7 cells of .1 m between a roller and a face that moves; `lower` is the grid's
+/// A weightless elastic block of 7 x 7 cells of 0.1 m between a roller and a face that moves; `lower` is the grid's
 /// left.
 fn platen(lower: f64, upper: f64) -> String {
     format!(
@@ -256,7 +256,7 @@ fn a_weaker_slope_moves_more() {
         scratch.mpirun(2, &[&arguments[..], &paper[..]].concat()).expect(0);
         *history(&scratch.path("slope.out")).get("E_delta_over_gamma_H2").unwrap().last().unwrap()
     });
-    // method.md 7: .3874 and .589 with another quasi-Newton method, and without extended splines. With them .571, as
+    // method.md 7: 0.3874 and 0.589 with another quasi-Newton method, and without extended splines. With them 0.571, as
     // the surface's cells are a little stiffer.
     assert!((moved[0] - 0.387).abs() < 0.002 && (moved[1] - 0.571).abs() < 0.01, "{moved:?}");
 }
@@ -339,7 +339,7 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
     named.mpirun(2, &["case.toml", "-q", "--force"]).expect(66).says_once("quake.csv: ");
 }
 
-/// A bar of 2 m by .5 m that its left end holds and its right end bends, by a stress that grows with depth.
+/// A bar of 2 m by 0.5 m that its left end holds and its right end bends, by a stress that grows with depth.
 const BENT: &str = r#"geometry = "plane-strain"
 [analysis]
 type = "quasi-static"
@@ -377,7 +377,7 @@ fn a_stress_by_depth_acts_on_a_surface_with_its_force_and_moment() {
     let scratch = Scratch::with_case(BENT);
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let rows = history(&scratch.path("case.out"));
-    // Along x -300 to +100 Pa over .5 m, along y 40 to 200: -50 and 60 N/m in the middle, and 400 (.5)^2/12 N.
+    // Along x -300 to +100 Pa over 0.5 m, along y 40 to 200: -50 and 60 N/m in the middle, and 400 (0.5)^2/12 N.
     let off =
         [("reaction-x", 50.0), ("reaction-y", -60.0)].map(|(name, expected)| at(&rows, name, 1.0) / expected - 1.0);
     let bent = [("n", -50.0), ("q", 60.0), ("m", -60.0 - 400.0 * 0.25 / 12.0)];

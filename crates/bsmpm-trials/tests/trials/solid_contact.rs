@@ -4,7 +4,7 @@ use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{at, history};
 
-/// A block on a base that is inclined, by gravity, by tan(theta) = .5 along (.8, .6).
+/// A block on a base that is inclined, by gravity, by tan(theta) = 0.5 along (0.8, 0.6).
 const BLOCK: &str = r#"
 geometry = "3d"
 [analysis]

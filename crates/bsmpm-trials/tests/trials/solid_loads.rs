@@ -138,7 +138,7 @@ fn bar(loads: &[([f64; 2], [f64; 2], [f64; 3])], cell: f64, places: &[(f64, f64)
 }
 
 /// Timoshenko's beam with Cowper's (1966) coefficient of shear; Saint-Venant's torsion of a square, whose constant is
-/// .1406 of the edge's fourth power.
+/// 0.1406 of the edge's fourth power.
 #[test]
 fn a_bar_bends_and_twists_as_beams_do() {
     let (young, poisson, edge, length) = (1e6, 0.3, 0.5_f64, 2.0_f64);

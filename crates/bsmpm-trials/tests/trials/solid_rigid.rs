@@ -90,7 +90,7 @@ fn a_rigid_block_in_a_slice_is_that_of_plane_strain() {
             assert!(none || (found / expected - 1.0).abs() < 1e-8, "{of_solid}: {found} for {expected}");
         }
     }
-    // It slides: friction is .3 of the normal force.
+    // It slides: friction is 0.3 of the normal force.
     let [x, z] = ["rigid-force-x", "rigid-force-z"].map(|name| at(&solid, name, 1.0));
     assert!((x.abs() / z / 0.3 - 1.0).abs() < 0.2, "{x} of {z}");
 }
@@ -152,7 +152,7 @@ fn a_block_stays_on_rigid_terrain_that_rubs_more_than_it_falls() {
     let scratch = Scratch::with_case(&sliding(0.6));
     scratch.direct(&["case.toml", "-q", "-o", "whole"]).expect(0);
     let found = history(&scratch.path("whole"));
-    // It swings by its own elasticity until .2 s, by 8 mm.
+    // It swings by its own elasticity until 0.2 s, by 8 mm.
     let moved = at(&found, "centre-of-mass-x", 0.5) - at(&found, "centre-of-mass-x", 0.25);
     assert!(moved.abs() < 5e-4, "it went {moved} m");
 }

@@ -122,7 +122,7 @@ fn lines_and_places_of_a_block_have_its_weight_on_any_ranks_and_after_a_restart(
     }
 }
 
-/// A cantilever of 2 m by .5 m by .5 m of 20 N/m3 that a couple of strips along the edges of its end twists.
+/// A cantilever of 2 m by 0.5 m by 0.5 m of 20 N/m3 that a couple of strips along the edges of its end twists.
 #[test]
 fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
     let (edge, length, unit_weight, stress, cell) = (0.5_f64, 2.0, 20.0, 100.0, 0.125);
@@ -156,7 +156,7 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
         let off = [of("q2") / -shear - 1.0, of("t") / couple - 1.0, (of("m2") - moment) / moment];
         let others = [of("n") / shear, of("q1") / shear, of("m1") / moment];
         println!("{name}: Q, T, M off by {off:?}; N, Q1, M1 {others:?}");
-        // The cut is smeared: M is too large by .16 w h^2.
+        // The cut is smeared: M is too large by 0.16 w h^2.
         assert!(off[0].abs() < 2e-3 && off[1].abs() < 2e-3 && off[2].abs() < 4e-3, "{off:?}");
         assert!(others.iter().all(|other| other.abs() < 2e-3), "{others:?}");
     }

@@ -152,7 +152,7 @@ fn a_tunnel_that_a_pressure_holds_stays_as_it_was() {
     }
 }
 
-/// Half of the sliding block is gone at .02 s, and another one falls from .03 s on.
+/// Half of the sliding block is gone at 0.02 s, and another one falls from 0.03 s on.
 fn staged_block() -> String {
     let halved = changed(SLIDING_BLOCK, "upper = [0.5, 0.2] }", "upper = [0.3, 0.2] }");
     let body = |name: &str, lower: &str, upper: &str, velocity: &str| {

@@ -49,7 +49,7 @@ name = "side"
 
 #[test]
 fn the_reaction_to_a_stress_at_the_start_is_there_before_the_first_step() {
-    // k0 leaves what the points' quadrature of a linear stress does: .7 % in four cells of depth.
+    // k0 leaves what the points' quadrature of a linear stress does: 0.7 % in four cells of depth.
     for (initial, off) in [("gravity = \"elastic\"", 1e-8), ("k0 = 0.5", 0.01)] {
         let scratch = Scratch::with_case(&format!("{LAYER}\n[initial]\n{initial}\n"));
         scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
@@ -105,7 +105,7 @@ fn a_background_that_carries_the_body_is_told() {
     assert!(!manifest(&none.path("case.out")).indicators.contains_key("background-work"));
 }
 
-/// Sand whose gaps close: at .3565 s the tip thins out to less than half a cell.
+/// Sand whose gaps close: at 0.3565 s the tip thins out to less than half a cell.
 #[test]
 fn a_front_that_goes_back_is_told_with_what_to_do() {
     let case = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();

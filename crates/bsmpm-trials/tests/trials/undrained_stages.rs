@@ -57,7 +57,7 @@ fn a_load_on_ground_that_has_drained_goes_to_the_water_first() {
     assert!(pressure(4.0).abs() < 1e-3 * LOADS[0] && (settled(4.0) / LOADS[0] - 1.0).abs() < 1e-3, "{}", settled(4.0));
     let first = share * LOADS[1];
     assert!((pressure(4.005) / first - 1.0).abs() < 1e-3, "{}, {first}", pressure(4.005));
-    // Steps of 5 ms: .44 and .38 % off in the pressure, .6 and .3 % in the settlement.
+    // Steps of 5 ms: 0.44 and 0.38 % off in the pressure, 0.6 and 0.3 % in the settlement.
     for later in [0.1, 0.3] {
         let [there, mean] = left(share * later, 0.025).map(|left| left * first);
         let [p, s] = [pressure(4.0 + later), settled(4.0 + later) - LOADS[0]];

@@ -16,7 +16,7 @@ use crate::tensor::Vector;
 /// A first residual this much below the force tolerance needs no direction: |du_0 . f_0| would only be noise.
 const ALREADY: f64 = 1e-2;
 /// Forces this much below their tolerance are enough where no method leads on: the states of steps that meet both
-/// criteria have such forces (.01 to .07 of the tolerance in a wall's active wedge, .5 at most), so that none is
+/// criteria have such forces (0.01 to 0.07 of the tolerance in a wall's active wedge, 0.5 at most), so that none is
 /// balanced worse.
 const SETTLED: f64 = 1e-1;
 /// Iterations over which the rate of convergence is taken.

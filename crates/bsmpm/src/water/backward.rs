@@ -101,7 +101,7 @@ mod tests {
             (t, before, inward) = (t + dt, [dt, step], inward + step);
             assert!((inward - rate.integral((0.0, t))).abs() < 1e-14, "{t} {inward}");
         }
-        // Triangles and trapezia by hand, and .5 from the last row on.
+        // Triangles and trapezia by hand, and 0.5 from the last row on.
         assert!((rate.integral((0.0, 5.0)) - (1.5 + 0.1 - 0.475 + 0.5)).abs() < 1e-14);
     }
 }

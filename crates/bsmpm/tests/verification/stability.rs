@@ -22,7 +22,7 @@ use nalgebra::DMatrix;
 type Plane = Scene<PlaneStrain, 2>;
 
 /// A column of height 1 and oedometric modulus 1 on 20 cells, of so many points a cell and axis: its weight, and so the
-/// pressure at its base, grows to .4 in the time 10.
+/// pressure at its base, grows to 0.4 in the time 10.
 fn column(poisson: f64, per_axis: usize) -> Plane {
     let young = (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson);
     let mut scene = Plane::new([axis(0.05, 1, 2), axis(0.05, 20, 2)], hencky(young, poisson), Regime::QuasiStatic)

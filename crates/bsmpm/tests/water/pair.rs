@@ -122,7 +122,9 @@ fn constants(mut scene: Plane) -> [f64; 2] {
 fn the_pair_is_stable_on_any_grid_whole_and_cut() {
     for cells in [4, 8, 12] {
         let found = [1.0, 0.65, 0.35, 0.05].map(|cut| constants(square(cells, cut)));
-        println!("{cells} cells, top row filled by 1, .65, .35, .05: beta without and with the tau term {found:.3?}");
+        println!(
+            "{cells} cells, top row filled by 1, 0.65, 0.35, 0.05: beta without and with the tau term {found:.3?}"
+        );
         assert!(found.iter().all(|[_, with]| *with > 0.7));
     }
 }

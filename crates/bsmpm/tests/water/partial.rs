@@ -203,7 +203,8 @@ fn a_front_of_rain_goes_down_without_oscillations() {
         assert!((gained / (0.05 * 0.5 * K * t) - 1.0).abs() < 2e-4, "all of the rain is in the ground");
     });
     println!("{iterations} iterations in 60 steps, falls {:.3} m, beyond the start {:.1e}", worst[0], worst[1]);
-    // A front of one cell between heads of 20 m and .1 m: ripples of two thousandths before it. Bounds: 1.3 times them.
+    // A front of one cell between heads of 20 m and 0.1 m: ripples of two thousandths before it. Bounds: 1.3 times
+    // them.
     assert!(worst[0] < 0.1 && worst[1] < 3.0e-3);
 }
 
