@@ -83,7 +83,7 @@ const SHIFT_FITTED: f64 = 0.2;
 /// row of points has crossed the line, by 75 % and more.
 const SHIFT_WATER: f64 = 0.1;
 
-/// What the state at the end tells.
+/// What the state at the end reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IndicatorState {
     defect: Option<Defect>,

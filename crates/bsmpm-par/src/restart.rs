@@ -56,7 +56,7 @@ pub struct Beginning {
     pub existing: Existing,
     /// How often it has been started before, on the first rank.
     pub restarts: Vec<manifest::ManifestRestart>,
-    /// What is to be told, on the first rank.
+    /// What is to be reported, on the first rank.
     pub warnings: Vec<String>,
 }
 
@@ -74,7 +74,7 @@ pub struct Resumed<'h> {
     pub state: CheckpointState,
     /// Keys of the case that have changed since, with both values.
     pub changed: Vec<String>,
-    /// What is to be told, on the first rank.
+    /// What is to be reported, on the first rank.
     pub warnings: Vec<String>,
     /// Where the run went on before, on the first rank.
     pub restarts: Vec<manifest::ManifestRestart>,

@@ -99,7 +99,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     }
 
     /// Gives the points a stress at the start, see [`initial`], which `settles` to equilibrium with the materials'
-    /// laws, and tells how well it is balanced, and what that took.
+    /// laws, and reports how well it is balanced, and what that took.
     pub fn stress(
         &mut self,
         start: StartStress<'_, D>,
@@ -239,7 +239,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         [numbers[0] as u64, numbers[1] as u64]
     }
 
-    /// What acts at once moves ground and water as no step before it tells.
+    /// What acts at once moves ground and water as no step before it reports.
     fn begin_afresh(&mut self) {
         self.stepper.begin_stage();
         self.points.forget_flow();
@@ -306,17 +306,17 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         grid.occupied(&self.points.x).is_some_and(|occupied| !grid.has_room(&occupied))
     }
 
-    /// What has been told since `before` by all ranks, and how even this one's `load` and the others' are; and whether
+    /// What has been sent since `before` by all ranks, and how even this one's `load` and the others' are; and whether
     /// the grid has room for the points of all. One reduction.
     fn count(&self, before: TrafficCounts, load: f64) -> (Cost, bool) {
-        let told = self.timers.traffic().counts().since(&before);
+        let sent = self.timers.traffic().counts().since(&before);
         let mut numbers = vec![0.0; 3 + self.slabs.ranks()];
-        numbers[..2].copy_from_slice(&told.sent().map(|count| count as f64));
+        numbers[..2].copy_from_slice(&sent.sent().map(|count| count as f64));
         numbers[2] = f64::from(self.lacks_room());
         numbers[3 + self.petsc.rank()] = load;
         self.halo.reduce(&mut numbers);
         let cost = Cost {
-            reductions: told.of(TrafficKind::Reduction).calls + 1,
+            reductions: sent.of(TrafficKind::Reduction).calls + 1,
             messages: numbers[0] as u64,
             bytes: numbers[1] as u64,
             imbalance: load::imbalance(&numbers[3..]),
@@ -352,7 +352,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     }
 
     /// Those slabs cut into as many parts as the present ones have, by what they hold of all ranks' points, which is
-    /// told, too; one reduction.
+    /// reported, too; one reduction.
     fn parted(&self, grid: &Grid<D>, slabs: Slabs) -> Option<(Slabs, Vec<f64>)> {
         let mut counts = load::points_by_row(grid, &slabs, &self.points);
         self.halo.reduce(&mut counts);

@@ -181,12 +181,12 @@ fn a_polygon_along_the_cells_is_a_box() {
 fn walls_thinner_than_points_lie_apart_are_warned_of() {
     let warned = |thick: f64| {
         let wall = format!("polygon = [[2.13, 1], [{}, 1], [{}, 9], [6.13, 9]]", 2.13 + thick, 6.13 + thick);
-        case(METRES, &[&wall], 2).warnings.iter().any(|told| told.contains("where one point stands for all"))
+        case(METRES, &[&wall], 2).warnings.iter().any(|warning| warning.contains("where one point stands for all"))
     };
     assert!(warned(0.05) && !warned(1.0));
     let warned = |thick: f64| {
         let wall = format!("box = {{ lower = [2.13, 1], upper = [{}, 9] }}", 2.13 + thick);
-        case(METRES, &[&wall], 2).warnings.iter().any(|told| told.contains("along x it is"))
+        case(METRES, &[&wall], 2).warnings.iter().any(|warning| warning.contains("along x it is"))
     };
     assert!(warned(0.45) && !warned(0.5));
 }

@@ -94,7 +94,7 @@ pub struct Boundary<const D: usize> {
     /// Rigid bodies.
     pub rigid: Vec<RigidBody<D>>,
     /// Per material, parts of a cell that its points reach to each side at the start: 0.5 over their number along an
-    /// axis; half a cell where it is not told. For faces that material comes off, and the water's level.
+    /// axis; half a cell where it is not reported. For faces that material comes off, and the water's level.
     pub reach: Vec<f64>,
 }
 
@@ -109,7 +109,7 @@ impl<const D: usize> Boundary<D> {
     }
 
     /// A place of the material's surface, or that on the face which holds the material where the place lies beyond it,
-    /// as one that is told by the material beside it may.
+    /// as one that is reported by the material beside it may.
     pub fn kept_in(&self, grid: &Grid<D>, mut x: Vector<D>) -> Vector<D> {
         for Support { axis, upper, velocity, contact, .. } in &self.supports {
             if velocity[*axis] == Some(0.0) || contact.is_some() {

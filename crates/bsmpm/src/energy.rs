@@ -1,5 +1,5 @@
 //! Energy bookkeeping: what a step takes in, stores, dissipates and loses, each measured by itself, so that what is
-//! left over tells whether the books are right.
+//! left over says whether the books are right.
 //!
 //! Over any number of steps, with T and E the kinetic and elastic energy of the points,
 //!

@@ -248,7 +248,7 @@ impl<const D: usize> Points<D> {
         }
     }
 
-    /// What flowed in the last step tells nothing of the next one: the ground has changed, or what acts on it.
+    /// What flowed in the last step says nothing of the next one: the ground has changed, or what acts on it.
     pub fn forget_flow(&mut self) {
         (self.content_change, self.gradient_change, self.surface.flowed) = (None, None, None);
     }

@@ -14,7 +14,7 @@
 //! error falls to 0.24 %, but in a bar that is compressed by 1 % it grows from 0.03 to 2 %.
 //!
 //! Nothing is carried from step to step. These are weights of the stress only, mass stays with the points. At the edge
-//! of a body nothing tells how much of a cell is filled: functions that reach there change nothing.
+//! of a body nothing says how much of a cell is filled: functions that reach there change nothing.
 
 use crate::boundary::Boundary;
 use crate::grid::occupied::Occupied;

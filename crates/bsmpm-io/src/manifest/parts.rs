@@ -231,7 +231,7 @@ pub struct BackgroundShares {
     pub work: f64,
 }
 
-/// What the ranks told each other in one way, over the run.
+/// What the ranks sent each other in one way, over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Communication {
     /// Exchanges or reductions that every rank took part in.

@@ -75,9 +75,9 @@ pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -
     // One that was stopped has a checkpoint, unless that was before it had found its first state.
     let kept_nothing = [Some(exit::WRITE), Some(exit::STOPPED)].contains(&run.exit_code);
     if run.status != Status::Running && !kept_nothing {
-        let told = format!("{:?}", run.status).to_lowercase();
+        let ended = format!("{:?}", run.status).to_lowercase();
         return refused(format!(
-            "the run in the output directory has {told} and left no checkpoint to go on from; --force starts it anew"
+            "the run in the output directory has {ended} and left no checkpoint to go on from; --force starts it anew"
         ));
     }
     futile(&run.restarts, 0)?;

@@ -29,7 +29,7 @@ pub struct Stage {
     pub strength_reduction: Option<f64>,
     /// Whether water that flows rests from here on.
     pub rests: bool,
-    /// Whether displacements that are told count from here.
+    /// Whether displacements that are reported count from here.
     pub resets_displacements: bool,
     /// Numbers of the histories that follow a point of what is placed.
     pub follows: Vec<usize>,

@@ -157,7 +157,7 @@ const WRONG: &[Wrong] = &[
 fn page() -> String {
     let mut page = String::from(
         "# Wrong cases\n\nWhat the program says of wrong soils, contacts, loads, motions, stages, histories and water: the first \
-         error of each, as it\nis printed, with exit code 65. All errors of a case are told at once. The toml block is what \
+         error of each, as it\nis printed, with exit code 65. All errors of a case are reported at once. The toml block is what \
          was put into a valid case\n(`tests/full.toml` of `bsmpm-scene`, `static.toml` and `seeping.toml` of its \
          `tests/bad_cases`). Made by the\ntest \
          `page`, which compares; `BSMPM_RENEW=1 cargo test -p bsmpm-scene --test bad_cases page` writes it anew.\n",

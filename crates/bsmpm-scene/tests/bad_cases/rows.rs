@@ -320,7 +320,7 @@ pub const RULES: &[Row] = &[
 ];
 
 /// Parts of histories, lines, surfaces, profiles and fields of frames.
-pub const TOLD: &[Row] = &[
+pub const REPORTED: &[Row] = &[
     row("body     = \"fill\"", "body = \"fil\"", "history.7.body", "did you mean `fill`?"),
     row(
         "body     = \"fill\"",
@@ -346,7 +346,7 @@ pub const TOLD: &[Row] = &[
     row("to    = [2.0, 0.0]", "to = [2.0, -1.0]", "profile.0.to", "outside the grid"),
     row("to    = [2.0, 0.0]", "to = [2.0, 1.25]", "profile.0.to", "it has no length"),
     row("times = [\"0.5 s\", 1.0]", "times = [0.5, 2.0]", "profile.0.times", "beyond the end"),
-    row("times = [\"0.5 s\", 1.0]", "times = []", "profile.0.times", "never told"),
+    row("times = [\"0.5 s\", 1.0]", "times = []", "profile.0.times", "never reported"),
     row(
         "quantities = [\"displacement\", ",
         "quantities = [\"disp\", ",
@@ -366,7 +366,7 @@ pub const TOLD: &[Row] = &[
 ];
 
 /// Profiles in a quasi-static case.
-pub const TOLD_QUASI_STATIC: &[Row] = &[row(
+pub const REPORTED_QUASI_STATIC: &[Row] = &[row(
     "[output]",
     "[[profile]]\nname = \"a\"\nfrom = [0, 0]\nto = [1, 1]\ncount = 2\nquantities = [\"velocity\"]\n[output]",
     "profile.0.quantities",

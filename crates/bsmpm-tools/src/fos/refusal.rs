@@ -64,7 +64,7 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (
             until.is_none() && is_moved(case),
-            "the case prescribes a motion: what moves as told shows no failure, however little strength is left; give the \
+            "the case prescribes a motion: what moves as prescribed shows no failure, however little strength is left; give the \
              load instead of the motion, or run the case itself and read its force against the motion, or give --stage NAME, \
              at whose end what has moved is held where it is, as a wall is",
         ),

@@ -131,7 +131,7 @@ impl Subject {
         }
         let bytes = case::load(path)?;
         let mut set = set.to_vec();
-        // As it is, which tells what the trials set; then with the strength that the search begins with.
+        // As it is, which says what the trials set; then with the strength that the search begins with.
         let as_it_is = parsed(path, &bytes, &set)?;
         let from_the_start = if stage.is_none() { sought.overrides(&as_it_is, from, 1.0) } else { Vec::new() };
         let refused = sought.refusal(&as_it_is).map(|reason| vec![reason]);
@@ -251,7 +251,7 @@ impl Subject {
         let stiffened = (stiffness != 1.0).then(|| {
             format!(
                 "the trials have {stiffness} times the case's stiffness, so that the geometry stays as drawn; displacements \
-                 are told as of its own"
+                 are reported as of its own"
             )
         });
         let grown = self.is_grown.then(|| {
@@ -275,7 +275,7 @@ impl Subject {
         });
         let rigid = self.has_rigid[0].then(|| "rigid bodies do not fail themselves".to_owned());
         let stopped = self.has_rigid[1].then(|| {
-            "rigid bodies and strips that move as told are held where they are then: what they press with falls as the soil \
+            "rigid bodies and strips that move as prescribed are held where they are then: what they press with falls as the soil \
              does, and is no load"
                 .to_owned()
         });

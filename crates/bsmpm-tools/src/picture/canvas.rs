@@ -157,7 +157,7 @@ impl Canvas {
     }
 }
 
-/// The width of a text in pixels; 0 for one that cannot be drawn, which its drawing tells.
+/// The width of a text in pixels; 0 for one that cannot be drawn, which its drawing reports.
 pub(crate) fn width(text: &str, size: f64) -> f64 {
     font(size).box_size(text).map_or(0.0, |(width, _)| f64::from(width) / FINE as f64)
 }

@@ -22,17 +22,17 @@ pub fn confined(poisson: f64, method: Stabilisation) -> Found {
     column(poisson, method, 1.0)
 }
 
-/// The largest error of so many columns that differ by round-off alone, where it decides what is found; told if all
+/// The largest error of so many columns that differ by round-off alone, where it decides what is found; reported if all
 /// are.
 pub fn confined_by_round_off(poisson: f64, method: Stabilisation, columns: i32) -> Found {
     let mut worst = None;
     for k in 0..columns {
         let found = column(poisson, method, 1.0 + f64::from(k) * 1e-13);
         worst = match (worst, found) {
-            (Some(Found::Figure(before, told)), Found::Figure(now, _)) if before >= now => {
-                Some(Found::Figure(before, told))
+            (Some(Found::Figure(before, reported)), Found::Figure(now, _)) if before >= now => {
+                Some(Found::Figure(before, reported))
             }
-            (Some(before @ Found::Figure(..)), Found::Told(..)) => Some(before),
+            (Some(before @ Found::Figure(..)), Found::Warned(..)) => Some(before),
             (Some(before @ Found::Broken(_)), _) => Some(before),
             (_, found) => Some(found),
         };
@@ -55,7 +55,7 @@ fn column(poisson: f64, method: Stabilisation, factor: f64) -> Found {
     scene.model.criteria = Criteria { energy: 1e-8, force: 1e-5, max_iterations: 1000 };
     if let Err(failure) = march(&mut scene) {
         let reason = failure.attempts.last().map(ToString::to_string).unwrap_or_default();
-        return Found::Told(80, format!("t = {:.4}: {reason}", failure.t));
+        return Found::Warned(80, format!("t = {:.4}: {reason}", failure.t));
     }
     let points = &scene.points;
     let top = (0..points.len()).max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1])).expect("points");
@@ -121,7 +121,7 @@ pub fn bending(poisson: f64, method: &'static str) -> Found {
     run(poisson).found(|run| Found::Figure((run.last("tip-y") / reference - 1.0).abs(), run.effort()))
 }
 
-/// Whether a case with this ratio is told to be nearly incompressible.
+/// Whether a case with this ratio is asked to be nearly incompressible.
 pub fn warned(poisson: f64) -> Found {
     let text = Footing { poisson, steps: 100, depth: 1e-3, ..Footing::default() }.text();
     Run::of(&text, 1, &["--max-steps", "1"]).found_or_warned("nearly incompressible", |_| f64::NAN)

@@ -114,9 +114,9 @@ pub fn collapse(dt: f64, end: f64) -> Found {
     let error = (way(&run) / reference - 1.0).abs();
     let advance = run.manifest().indicators.remove("step-advance").filter(|indicator| indicator.unusual);
     match advance {
-        Some(told) => Found::Told(
-            if told.failed { 82 } else { 0 },
-            format!("step-advance is {:.2}: {}; figure {error:.3}", told.value, told.meaning),
+        Some(reported) => Found::Warned(
+            if reported.failed { 82 } else { 0 },
+            format!("step-advance is {:.2}: {}; figure {error:.3}", reported.value, reported.meaning),
         ),
         None => run.found(|run| Found::Figure(error, run.effort())),
     }

@@ -119,7 +119,7 @@ impl Trial {
         running
     }
 
-    /// Steps that it has told of so far.
+    /// Steps that it has reported so far.
     pub fn made(&self) -> u64 {
         let text = std::fs::read_to_string(self.directory().join("steps.csv")).unwrap_or_default();
         text.lines().count().saturating_sub(2) as u64

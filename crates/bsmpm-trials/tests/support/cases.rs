@@ -148,7 +148,7 @@ quantity = "reaction"
 face = "bottom"
 "#;
 
-/// So many steps of the column that it ends when it is told to.
+/// So many steps of the column that it ends when it is asked to.
 pub fn endless() -> String {
     changed(COLUMN, "steps = 5", "steps = 1000000")
 }

@@ -1,4 +1,4 @@
-//! What is accepted as converged, what is not, and what is told of it.
+//! What is accepted as converged, what is not, and what is reported it.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
@@ -117,7 +117,7 @@ fn a_wall_that_moves_away_has_rankines_active_thrust() {
         let found = value(&scratch, "reaction-x");
         assert!((found / thrust - 1.0).abs() < 0.02, "{cohesion}: {found} {thrust}");
         let summary = manifest(&scratch.path("case.out")).summary;
-        // What settled is told, and is not what steps are made of.
+        // What settled is reported, and is not what steps are made of.
         assert!(summary.settled_steps * 2 < summary.steps, "{summary:?}");
     }
 }

@@ -151,10 +151,10 @@ fn ground_beside_a_free_field_is_built_and_then_shakes() {
         println!("{name}: {before:e} and {after:e} m");
         assert!(before < -1e-4 && (after - before).abs() < 1e-7, "{before:e} {after:e}");
     }
-    for (wrong, told) in [
+    for (wrong, reported) in [
         ("stage.0.at=0.15", "let [shaking] begin later"),
         ("body.1.polygon=[[0.5, 4], [9, 4], [8, 5], [4, 5]]", "the cells at \"left\" are the free field"),
     ] {
-        scratch.mpirun(1, &["case.toml", "--check", "--set", wrong]).expect(65).says_once(told);
+        scratch.mpirun(1, &["case.toml", "--check", "--set", wrong]).expect(65).says_once(reported);
     }
 }

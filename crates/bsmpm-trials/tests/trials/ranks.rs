@@ -205,14 +205,14 @@ fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_an
 /// single.
 #[test]
 fn a_factor_of_single_precision_that_is_too_coarse_is_made_anew_on_1_2_and_3_ranks() {
-    let told = |nu: &str, ranks: usize| {
+    let reports = |nu: &str, ranks: usize| {
         let mut launcher = Command::new("mpirun");
         launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string()]).arg(example("solvers"));
         launcher.args(["direct", nu, "20"]);
         processes::run(launcher, &[], true, Duration::from_secs(120)).expect(0).stdout
     };
     for ranks in [1, 2, 3] {
-        let (stiff, usual) = (told("0.499999", ranks), told("0.3", ranks));
+        let (stiff, usual) = (reports("0.499999", ranks), reports("0.3", ranks));
         assert!(stiff.contains("1 factorisations more") && usual.contains("0 factorisations more"), "{stiff} {usual}");
     }
 }

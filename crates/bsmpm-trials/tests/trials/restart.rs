@@ -376,7 +376,7 @@ fn a_branch_in_another_directory_has_a_checkpoint_of_its_own_at_once() {
 }
 
 #[test]
-fn a_failure_that_was_mended_is_no_longer_told() {
+fn a_failure_that_was_mended_is_no_longer_reported() {
     let scratch = Scratch::with_case(COLUMN);
     let run = ["case.toml", "-q", "--set", OFTEN];
     scratch.mpirun(2, &[&run[..], &["--max-steps", "2"]].concat()).expect(75);

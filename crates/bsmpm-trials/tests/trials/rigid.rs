@@ -1,5 +1,5 @@
-//! Rigid bodies: the same on any number of ranks and over restarts, what is told of them, and the thrust of sand on a
-//! wall.
+//! Rigid bodies: the same on any number of ranks and over restarts, what is reported of them, and the thrust of sand on
+//! a wall.
 
 use crate::support::cases::changed;
 use crate::support::results::{at, history, manifest};
@@ -112,7 +112,7 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
 }
 
 #[test]
-fn what_is_doubtful_of_rigid_bodies_is_told_and_what_nothing_holds_ends_the_run() {
+fn what_is_doubtful_of_rigid_bodies_is_reported_and_what_nothing_holds_ends_the_run() {
     let met = changed(CASE, "centre = [2.8, 1.5], radius = 0.5", "centre = [1.3, 1.9], radius = 0.5");
     let met = changed(&met, "[0.06, 0.0, -0.03]", "[0.06, -0.1, -0.3]");
     let scratch = Scratch::with_case(&changed(&met, "dt = 0.003", "dt = 0.03"));

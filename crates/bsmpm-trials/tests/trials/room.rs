@@ -64,7 +64,7 @@ fn the_footing_has_the_same_bits_in_a_grid_ten_times_as_high() {
     agree(&scratch, &[1], &["[5.0,7.0]", "[5.0,70.0]"], &[], 4);
 }
 
-/// The newest checkpoint of a run: its bytes, and the room that its state tells, a text in one piece.
+/// The newest checkpoint of a run: its bytes, and the room that its state reports, a text in one piece.
 fn newest(directory: &Path) -> (usize, String) {
     let files = std::fs::read_dir(directory.join(bsmpm_io::checkpoint::FOLDER)).unwrap();
     let files = files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|end| end == "h5"));

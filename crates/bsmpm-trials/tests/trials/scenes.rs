@@ -133,7 +133,7 @@ fn the_footings_histories_are_true() {
     );
     assert!(last("right-x") < 0.0, "the face pushes to the left");
     assert!(last("footing-force") > 0.0 && last("slip") < 1e-2);
-    let initial = manifest.initial.expect("the stress at the start is told");
+    let initial = manifest.initial.expect("the stress at the start is reported");
     assert!(initial.unbalance < 1e-8 && initial.yielding == 0, "{initial:?}");
     assert!(manifest.summary.largest_slip.is_some_and(|slip| slip < 1e-2));
     assert!(manifest.summary.largest_accumulated_slip.is_some_and(|slip| slip > 1e-6 && slip < 4e-3));
@@ -271,7 +271,7 @@ fn a_load_that_starts_away_from_every_body_is_an_error_of_the_case() {
 }
 
 #[test]
-fn a_load_whose_points_leave_the_grid_is_told_and_ends_the_run() {
+fn a_load_whose_points_leave_the_grid_is_reported_and_ends_the_run() {
     // The block's top is drawn through the top of the grid half a cell above; its points are still below then.
     let case = platen(0.0, 0.7)
         .replace("upper = [0.7, 0.7]\ncell", "upper = [0.7, 0.8]\ncell")
@@ -298,16 +298,16 @@ fn a_start_that_is_out_of_balance_or_beyond_yield_is_warned_of() {
         scratch.mpirun(2, &["case.toml", "-q", "--max-steps", "1"]);
         manifest(&scratch.path("case.out")).warnings
     };
-    let told = |warnings: &[String], text: &str| warnings.iter().any(|warning| warning.contains(text));
+    let reports = |warnings: &[String], text: &str| warnings.iter().any(|warning| warning.contains(text));
     let far = warnings(&changed(&case, "ramp   = 0.5", "ramp = 0.0"));
-    assert!(told(&far, "% of the largest force unbalanced") && told(&far, "beyond yield at"), "{far:?}");
-    assert!(told(&far, "traction.0: acts in full from time 0"), "{far:?}");
+    assert!(reports(&far, "% of the largest force unbalanced") && reports(&far, "beyond yield at"), "{far:?}");
+    assert!(reports(&far, "traction.0: acts in full from time 0"), "{far:?}");
     let near = warnings(LOADED);
-    assert!(!told(&near, "unbalanced") && !told(&near, "beyond yield") && !told(&near, "from time 0"), "{near:?}");
+    assert!(!reports(&near, "unbalanced") && !reports(&near, "beyond yield") && !reports(&near, "from time 0"), "{near:?}");
 }
 
 #[test]
-fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_are_told() {
+fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_are_reported() {
     let shaken = |rows: &str| format!("{SLIDING_BLOCK}\n[shaking]\nacceleration = {rows}\n");
     let inline = Scratch::with_case(&shaken("[[0.01, 3.0, 0.0], [0.03, -2.0, 0.0]]"));
     inline.mpirun(1, &["case.toml", "-q"]).expect(0);
@@ -320,15 +320,15 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
     still.mpirun(1, &["case.toml", "-q"]).expect(0);
     assert_ne!(of(&inline), of(&still));
     let warnings = manifest(&named.path("case.out")).warnings;
-    assert!(warnings.iter().any(|told| told.contains("moves along x, and nothing holds the bodies along x")));
+    assert!(warnings.iter().any(|warning| warning.contains("moves along x, and nothing holds the bodies along x")));
     // The case that is kept has the rows, so that a restart needs no file.
     let text = manifest(&named.path("case.out")).case.text;
     assert!(text.contains("300.0 cm/s2") && !text.contains("quake.csv"), "{text}");
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, -100\n");
     named.mpirun(1, &["case.toml", "-q", "--restart", "auto"]).expect(76).says_once("shaking.acceleration was");
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, fast\n");
-    let told = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
-    told.says_once("quake.csv: line 3: `fast` is no number");
+    let reported = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
+    reported.says_once("quake.csv: line 3: `fast` is no number");
     let lengths: String = (1..=40).map(|row| format!("{row}, 1\n")).collect();
     named.write("quake.csv", format!("t [m], a [cm/s2]\n{lengths}"));
     named

@@ -126,11 +126,11 @@ fn bar(loads: &[([f64; 2], [f64; 2], [f64; 3])], cell: f64, places: &[(f64, f64)
         let [lower, upper] = [lower, upper].map(|[y, z]| format!("[2, {y}, {z}]"));
         format!("[[traction]]\nrectangle = {{ lower = {lower}, upper = {upper} }}\nstress = {stress:?}\nramp = 1.0\n")
     });
-    let told = places.iter().enumerate().map(|(number, (x, z))| {
+    let reported = places.iter().enumerate().map(|(number, (x, z))| {
         format!("[[history]]\nname = \"at{number}\"\nquantity = \"displacement\"\nat = [{x}, 0.375, {z}]\n")
     });
     let bar = changed(BAR, "cell = 0.125", &format!("cell = {cell}"));
-    let scratch = Scratch::with_case(&format!("{bar}{}{}", loads.collect::<String>(), told.collect::<String>()));
+    let scratch = Scratch::with_case(&format!("{bar}{}{}", loads.collect::<String>(), reported.collect::<String>()));
     scratch.direct(&["case.toml", "-q", "-o", "out"]).expect(0);
     let table = history(&scratch.path("out"));
     let moved = |number: usize| ["x", "y", "z"].map(|along| at(&table, &format!("at{number}-{along}"), 1.0));

@@ -44,7 +44,7 @@ impl Bench {
         self.0.path().join(name)
     }
 
-    /// The text of a sweep, the lines that it told, and its `sweep.json`.
+    /// The text of a sweep, the lines that it reported, and its `sweep.json`.
     fn sweep(&self, options: &[&str]) -> (String, Vec<String>, Value) {
         let (output, solver) = (self.path("sweep"), self.path("solver"));
         let words = [

@@ -1,4 +1,4 @@
-//! Unilateral contact with Coulomb's friction, whatever has it: its law, its statuses, what is told of it.
+//! Unilateral contact with Coulomb's friction, whatever has it: its law, its statuses, what is reported it.
 
 use crate::tensor::Vector;
 

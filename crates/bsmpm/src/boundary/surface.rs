@@ -27,7 +27,7 @@ pub struct SurfacePoint<const D: usize> {
     /// m^(D-1)  share of the area
     pub area: f64,
     /// m  corners of the piece that it stands for, in turn: of a segment each end twice, of a triangle one of them; all
-    /// the point itself where nothing is told
+    /// the point itself where nothing is reported
     pub corners: [Vector<D>; CORNERS],
 }
 

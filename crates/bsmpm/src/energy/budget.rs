@@ -3,7 +3,7 @@
 //! In a state after any number of steps, T + E + plastic <= T0 + E0 + external: elastic energy and dissipation are
 //! never negative, so that what is moving, strained and dissipated was there at the start or is work of gravity, loads
 //! and what moves. A method whose force does not do the work of its stress makes energy all the same; no measure of the
-//! equilibrium tells, as each step is in balance.
+//! equilibrium reports, as each step is in balance.
 //!
 //! What an algorithm has lost can be made again unseen. Growth since the state with the least energy would show it
 //! (short collapse 0.009, in steps of 10 ms 0.031), but damped oscillators pass 0.05, and small blocks that a sudden

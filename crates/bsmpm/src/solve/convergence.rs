@@ -192,10 +192,10 @@ pub fn worst_nodes<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>
     let force = |node: usize| Vector::<D>::from_column_slice(&balance.f_oob[Nodal::<D>::of(node)]).norm();
     let mut nodes: Vec<usize> = problem.halo.owned().nodes().filter(|&node| force(node) > 0.0).collect();
     nodes.sort_by(|&a, &b| force(b).total_cmp(&force(a)));
-    let told = |node: usize| {
+    let worst = |node: usize| {
         let place = grid.node_at(node);
         let x = (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect();
         WorstNode { number: grid.number_of(node) as u64, x, force: force(node) }
     };
-    nodes.into_iter().take(WORST).map(told).collect()
+    nodes.into_iter().take(WORST).map(worst).collect()
 }

@@ -103,7 +103,7 @@ impl Secants {
         Direction { du, energy, solved }
     }
 
-    /// Tells how much of the last direction was taken: 1 for a full step.
+    /// Reports how much of the last direction was taken: 1 for a full step.
     pub fn took(&mut self, length: f64) {
         match self {
             Self::Multisecant(secants) => secants.took(length),

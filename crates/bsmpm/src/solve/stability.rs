@@ -26,8 +26,8 @@ pub fn tells<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -
 }
 
 /// Refuses a direction du (m, nodal; how much of it was taken changes no sign) near static equilibrium whose
-/// second-order work is negative beyond round-off: `work` is du . f_oob before it was taken, N m, where that [`tells`]
-/// anything; `after` are the forces then. Agreed by all ranks; one reduction.
+/// second-order work is negative beyond round-off: `work` is du . f_oob before it was taken, N m, where that
+/// [`reports`] anything; `after` are the forces then. Agreed by all ranks; one reduction.
 pub fn check<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     convergence: &Convergence,

@@ -1,4 +1,4 @@
-//! The converged water, saved into the points, and what a step tells of it.
+//! The converged water, saved into the points, and what a step reports of it.
 
 use crate::exact::Exact;
 use crate::grid::transfer::scalars;
@@ -16,8 +16,8 @@ use crate::water::flow::{DrainedFace, Flow};
 use crate::water::nodes::{Pores, face_functions};
 use crate::water::residual::Flowing;
 
-/// Part of a cell by which ground is off a drained face when it is told of: a column that had settled by 0.1 of a cell
-/// was 1 % short of its settlement, by 0.3 of a cell 4 %, and by one it settled no more.
+/// Part of a cell by which ground is off a drained face when it is reported: a column that had settled by 0.1 of a
+/// cell was 1 % short of its settlement, by 0.3 of a cell 4 %, and by one it settled no more.
 const OFF: f64 = 0.2;
 /// Cells from the face within which ground is at it: no row of points of a cell, (k + 1/2)/n, is just there.
 const NEAR: f64 = 0.6;

@@ -306,7 +306,7 @@ fn what_smoothing_takes_is_not_damped() {
                 let taken = 0.5 * points.smoothing_of(p).full().determinant().ln();
                 let dilation = 0.5 * points.b_e.at(p).full().determinant().ln() - taken;
                 let jacobian = points.F.at(p).determinant() * points.dilation_of(p);
-                // The dilation that the stress has felt tells of smoothing as well, which came after the stress.
+                // The dilation that the stress has felt shows smoothing as well, which came after the stress.
                 let mean = points.sigma.at(p).full().trace() / 3.0 * jacobian / taken.exp();
                 let rate = (dilation - before.insert(points.id[p], dilation).unwrap_or(0.0)) / accepted.dt;
                 off = off.max((mean - bulk * (dilation + TIME * rate)).abs());

@@ -1,4 +1,4 @@
-//! Energy: the books close to the iteration's tolerance, every part tells what it is named after, and known energies
+//! Energy: the books close to the iteration's tolerance, every part says what it is named after, and known energies
 //! are found.
 
 use super::bar::{PERIOD, bar};

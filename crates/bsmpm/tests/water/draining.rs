@@ -87,7 +87,7 @@ fn arc(radius: f64, cell: f64) -> (Vec<SurfacePoint<2>>, Vec<Vector<2>>) {
 }
 
 /// A quarter of a weightless body between two radii about the origin, which cut the cells, `cells` of them in 1 m; with
-/// water that flows through it, drained as told.
+/// water that flows through it, drained as prescribed.
 fn quarter(cells: usize, [inner, outer]: [f64; 2], drains: Vec<Drain<2>>) -> Plane {
     let cell = 1.0 / cells as f64;
     let rows = (outer * cells as f64) as usize + 1;

@@ -43,7 +43,7 @@ impl<const D: usize> StripContact<D> {
 }
 
 impl<const D: usize> ContactState<D> {
-    /// At the start of a step, as far as what is `carried` tells.
+    /// At the start of a step, as far as what is `carried` reports.
     pub fn of(contact: StripContact<D>, carried: &Vector<D>) -> Self {
         let open_before = contact.is_open(carried);
         let closed = if contact.law.friction == 0.0 { Status::Slip(Vector::zeros()) } else { Status::Stick };
