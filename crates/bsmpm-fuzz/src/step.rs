@@ -40,7 +40,11 @@ fn try_steps(case: &Case) {
         let before = (run.points.clone(), run.guess.clone());
         match run.step(t, end - t) {
             Ok(report) => {
-                assert!(report.force.is_finite() && run.guess.iter().all(|u| u.is_finite()), "{report:?} {}", context());
+                assert!(
+                    report.force.is_finite() && run.guess.iter().all(|u| u.is_finite()),
+                    "{report:?} {}",
+                    context()
+                );
                 check(&run.points, &run.model.grid, &context);
                 assert_eq!((&run.points.id, &run.points.mass), (&before.0.id, &before.0.mass));
                 run.points.sort_by_cell(&run.model.grid);

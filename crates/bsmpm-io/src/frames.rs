@@ -63,7 +63,7 @@ impl Frames {
         Ok(Self { directory, entries: Vec::new(), filled: Vec::new(), manifest: None, ending: None })
     }
 
-    /// Goes on with the frames of a run, those of `entries` that are there, and lists them anew.
+    /// Goes on with the frames of a run, those of `entries` that are there, and lists them again.
     ///
     /// # Errors
     /// [`Error::File`] when the folder cannot be made or the list not written.

@@ -42,7 +42,7 @@ pub struct Ledger {
     frames: Frames,
     store: Option<Store>, // once there is a checkpoint
     news: Vec<String>,    // warnings of this start
-    has_gaps: bool,       // a table was begun anew
+    has_gaps: bool,       // a table was begun again
     keep: u64,
     end: f64,
     dt: f64,
@@ -190,7 +190,7 @@ impl Ledger {
         self.manifest.summary.steps = number;
         self.attempts(accepted.rejected.len(), accepted.counts);
         if self.manifest.ranks > 1 {
-            self.manifest.balance.get_or_insert_default().enter(cost.imbalance, cost.is_cut_anew);
+            self.manifest.balance.get_or_insert_default().enter(cost.imbalance, cost.is_cut_again);
         }
         self.manifest.summary.newton_steps += u64::from(report.newton_iterations > 0);
         self.measures(number, report);

@@ -113,9 +113,9 @@ pub fn plan<'h>(
         Restart::Auto => find(&world, Wanted::Newest(&folder))?,
     };
     let Some(found) = found else {
-        let anew =
-            held.map_or_else(|| Ok(Beginning::default()), |_| there::anew(run.as_ref(), &passed_over, world.size()));
-        return agree(&world, anew).map(RunStart::New);
+        let afresh =
+            held.map_or_else(|| Ok(Beginning::default()), |_| there::afresh(run.as_ref(), &passed_over, world.size()));
+        return agree(&world, afresh).map(RunStart::New);
     };
     let restarts = run.map_or_else(Vec::new, |run| run.restarts);
     agree(&world, if auto { there::futile(&restarts, found.record.step) } else { Ok(()) })?;

@@ -111,7 +111,8 @@ fn bodies_of_a_solid_meet_on_planes_of_the_grid_or_are_warned_of() {
         let case = case(&text);
         let lines = |axis: usize| case.grid.lines[axis].iter().map(|line| line.breakpoint).collect::<Vec<_>>();
         let inside = case.warnings.iter().any(|warning| {
-            warning.contains("soft meet inside cells") || warning.contains("and where they meet was not found: if they do")
+            warning.contains("soft meet inside cells")
+                || warning.contains("and where they meet was not found: if they do")
         });
         ([0, 1, 2].map(lines), inside)
     };
@@ -195,15 +196,16 @@ fn where_water_fills_ground_that_moves_through_lines_they_are_reported() {
     let strip = format!("{wet}{STRIP}");
     assert_eq!(lines(&strip).0, [vec![6, 10], vec![]]);
     assert!(!loses(&strip), "0.2 of a cell");
-    let rubs =
-        |text: &str| lines(text).2.iter().any(|warning| warning.contains("material.soft has friction and does not drain"));
+    let has_friction = |text: &str| {
+        lines(text).2.iter().any(|warning| warning.contains("material.soft has friction and does not drain"))
+    };
     let law = ["model = \"tresca\"", "cohesion = 1e3"];
     let friction = |angle: u32| {
         let mohr = strip.replace(law[0], "model = \"mohr-coulomb\"");
         mohr.replace(law[1], &format!("cohesion = 1e3\n    friction_angle = {angle}"))
     };
-    assert!(rubs(&friction(25)) && !rubs(&friction(0)) && !rubs(&strip));
-    assert!(!rubs(&friction(25).replace(STRIP, "")), "no line");
+    assert!(has_friction(&friction(25)) && !has_friction(&friction(0)) && !has_friction(&strip));
+    assert!(!has_friction(&friction(25).replace(STRIP, "")), "no line");
     let deeper = strip.replace("[0.0, -0.1]", "[0.0, -0.4]");
     assert!(loses(&deeper));
     let by_hand = "knots = { x = [0, 2, 2, 4, 6, 8], y = [0, 1, 2, 3, 4, 5, 6] }";
@@ -259,7 +261,8 @@ fn rigid_bodies_have_lines_at_the_corners_that_stay() {
     assert_eq!(lines(&punch(-1.0, down)).0, [vec![10], vec![]]);
     let (found, _, warnings) = lines(&punch(3.2, down));
     assert_eq!(found, [vec![10], vec![]]);
-    let reports = |warnings: &[String]| warnings.iter().any(|warning| warning.contains("a corner at x = 3.2 lies inside"));
+    let reports =
+        |warnings: &[String]| warnings.iter().any(|warning| warning.contains("a corner at x = 3.2 lies inside"));
     assert!(reports(&warnings), "{warnings:?}");
     // A wedge has no edge there, and is widest there all the same; above the ground it parts nothing.
     let wedge = |top: f64| {

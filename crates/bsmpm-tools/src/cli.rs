@@ -144,7 +144,8 @@ mod tests {
                 let numbers = part.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse::<u8>().ok());
                 assert!(numbers.clone().all(|code| ALL.contains(&code)), "{part}");
                 let is_reported = WORDS.iter().filter(|(words, _)| part.contains(words));
-                is_reported.for_each(|(words, code)| assert_eq!(numbers.clone().next(), Some(*code), "{words}: {part}"));
+                is_reported
+                    .for_each(|(words, code)| assert_eq!(numbers.clone().next(), Some(*code), "{words}: {part}"));
             }
             seen += 1;
         }

@@ -160,7 +160,8 @@ fn a_finished_run_is_set_beside_it() {
     let output = bench.estimate(&["column.toml", "--no-probe", "--against", "column.out"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("actual, 1 rank(s)") && text.contains("estimated / actual"), "{text}");
-    let reported = bench.estimate(&["column.toml", "--no-probe", "--against", "column.out", "--set", "grid.degree=cubic"]);
+    let reported =
+        bench.estimate(&["column.toml", "--no-probe", "--against", "column.out", "--set", "grid.degree=cubic"]);
     assert!(String::from_utf8(reported.stderr).unwrap().contains("another text of the case"));
 }
 

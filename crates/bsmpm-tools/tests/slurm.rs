@@ -122,7 +122,11 @@ fn only_75_is_queued_again() {
     let requeue = ["requeue", "4711"].map(|word| word.as_bytes().to_vec()).to_vec();
     assert_eq!(scratch.job(script.as_bytes(), 75, 0).0, Some(0));
     assert_eq!(scratch.job(script.as_bytes(), 75, 0).2, requeue, "once");
-    assert_eq!(scratch.job(script.as_bytes(), 75, 1).0, Some(75), "where Slurm does not take it back, that is reported");
+    assert_eq!(
+        scratch.job(script.as_bytes(), 75, 1).0,
+        Some(75),
+        "where Slurm does not take it back, that is reported"
+    );
     for code in [0, 1, 2, 65, 70, 71, 73, 74, 76, 77, 80, 81, 137] {
         let (own, _, requeued) = scratch.job(script.as_bytes(), code, 0);
         assert_eq!((own, requeued.len()), (Some(code.into()), 0));

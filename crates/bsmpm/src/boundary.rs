@@ -252,7 +252,7 @@ impl<const D: usize> Boundary<D> {
         };
         let holds = |support: &Support<D>, component: usize| support.velocity[component].is_some();
         let in_contact = |(support, _): &(&Support<D>, &mut [Exact])| support.contact.is_some();
-        // Who holds goes first, then what pushes, then what rubs.
+        // Who holds goes first, then what pushes, then what has friction.
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
             sum((support, sums), &|_, component| component == support.axis && holds(support, component));
         }
@@ -269,10 +269,10 @@ impl<const D: usize> Boundary<D> {
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
             sum((support, sums), &|_, component| component == support.axis);
         }
-        // Along an edge in space that it shares with a face that rubs, a smooth one decides nothing.
-        for rubs in [true, false] {
+        // Along an edge in space that it shares with a face with friction, a smooth one decides nothing.
+        for has_friction in [true, false] {
             let of = |(support, _): &(&Support<D>, &mut [Exact])| {
-                support.contact.is_some_and(|contact| (contact.friction > 0.0) == rubs)
+                support.contact.is_some_and(|contact| (contact.friction > 0.0) == has_friction)
             };
             for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(of) {
                 sum((support, sums), &|_, component| component != support.axis);

@@ -140,7 +140,7 @@ impl<'p> Shell<'p> {
         unsafe { &*self.slot }
     }
 
-    /// Informs PETSc that products differ from now on, so that what was built from the matrix is built anew.
+    /// Informs PETSc that products differ from now on, so that what was built from the matrix is built again.
     /// Collective.
     pub fn changed(&self) -> Result<()> {
         // SAFETY: the handle is valid; the two calls belong together, and count the matrix's states.

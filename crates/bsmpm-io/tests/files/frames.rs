@@ -71,7 +71,10 @@ fn part(frame: &Frame, range: std::ops::Range<usize>) -> Frame {
 /// Writes `announced` points of which `frame` has `parts`.
 fn write_parts(path: &Path, frame: &Frame, announced: usize, parts: &[std::ops::Range<usize>]) -> Result<(), Error> {
     let mut parts = parts.iter().map(|range| part(frame, range.clone()));
-    vtu::write_parts(path, Parts { head: frame.without_points(), points: announced, names: &[], next: &mut || parts.next() })
+    vtu::write_parts(
+        path,
+        Parts { head: frame.without_points(), points: announced, names: &[], next: &mut || parts.next() },
+    )
 }
 
 #[test]

@@ -224,7 +224,8 @@ impl CheckpointState {
             Ok(_) => Err("it reads back otherwise".into()),
             Err(error) => Err(error.to_string()),
         });
-        let lost = |reason: String| format!("no checkpoint of step {}: its state cannot be written: {reason}", self.steps);
+        let lost =
+            |reason: String| format!("no checkpoint of step {}: its state cannot be written: {reason}", self.steps);
         whole.map_err(|reason| Refusal::new(exit::LEFT, lost(reason)))
     }
 

@@ -262,7 +262,8 @@ fn a_flux_next_to_a_surface_is_warned_of() {
         let text = text + &format!("\n[[history]]\nquantity = \"flux\"\nat = {at}\n");
         bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
     };
-    let reports = |warnings: &[String]| warnings.iter().any(|warning| warning.contains("less than a cell from a surface"));
+    let reports =
+        |warnings: &[String]| warnings.iter().any(|warning| warning.contains("less than a cell from a surface"));
     assert!(reports(&case("[10.0, 14.2]")) && reports(&case("[29.8, 9.6]")));
     assert!(!reports(&case("[10.0, 13.5]")) && !reports(&case("[0.1, 0.1]")), "a face of the grid is no surface");
 }

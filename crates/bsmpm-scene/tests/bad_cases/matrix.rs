@@ -429,6 +429,7 @@ fn take((part, by, says): (&str, &str, &str)) -> Result<(), String> {
     let mut warnings = case.map_err(|errors| format!("`{by}`: {errors:#?}"))?.warnings;
     let base = Case::from_text("case.toml", DYNAMIC, &[]).expect("a valid case").warnings;
     warnings.retain(|warning| !base.contains(warning));
-    let fits = if says.is_empty() { warnings.is_empty() } else { warnings.iter().any(|warning| warning.contains(says)) };
+    let fits =
+        if says.is_empty() { warnings.is_empty() } else { warnings.iter().any(|warning| warning.contains(says)) };
     if fits { Ok(()) } else { Err(format!("`{by}`: `{says}` is not what is warned of: {warnings:?}")) }
 }

@@ -346,7 +346,7 @@ pub const REPORTED: &[Row] = &[
     row("to    = [2.0, 0.0]", "to = [2.0, -1.0]", "profile.0.to", "outside the grid"),
     row("to    = [2.0, 0.0]", "to = [2.0, 1.25]", "profile.0.to", "it has no length"),
     row("times = [\"0.5 s\", 1.0]", "times = [0.5, 2.0]", "profile.0.times", "beyond the end"),
-    row("times = [\"0.5 s\", 1.0]", "times = []", "profile.0.times", "never reported"),
+    row("times = [\"0.5 s\", 1.0]", "times = []", "profile.0.times", "never told"),
     row(
         "quantities = [\"displacement\", ",
         "quantities = [\"disp\", ",

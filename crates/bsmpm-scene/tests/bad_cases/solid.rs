@@ -325,7 +325,8 @@ fn a_surface_that_is_turned_inside_out_as_a_whole_is_taken_and_warned_of() {
         .replacen("[7, 3, 4, 5, 5, 4, 5, 3, 6]", "[7, 3, 4, 5, 3, 6, 5, 5, 4]", 1)
         .replacen("[5, 3, 4, 5, 3, 6, 5, 5, 4]", "[5, 3, 4, 5, 5, 4, 5, 3, 6]", 1);
     let case = |text: &str| bsmpm_scene::Case::from_text("case.toml", text, &[]).expect("a valid case");
-    let warned = |text: &str| case(text).warnings.iter().any(|warning| warning.contains("triangles: all of them are turned"));
+    let warned =
+        |text: &str| case(text).warnings.iter().any(|warning| warning.contains("triangles: all of them are turned"));
     assert!(warned(&turned) && !warned(base));
     assert_eq!(case(&turned).bodies[5].region, case(base).bodies[5].region);
 }

@@ -158,7 +158,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          [material.soft]\nmodel = \"modified-cam-clay\"\nkappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = 1\n\
          ocr = 1.5\nyoung = 1e6\npoisson = 0.3",
         "stage.0.materials.0.to",
-        "is not reported by the stress",
+        "is not told by the stress",
     )
     .down(8),
     row(

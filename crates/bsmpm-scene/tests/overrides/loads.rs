@@ -414,8 +414,8 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
         "boundary.left=roller",
         "body.0={material=\"soil\", polygon=[[0, 0], [2, 0], [2, 1], [0, 1.4]], points_per_cell=3}",
     ];
-    let askew = warned("from=[0, 1.4], to=[1, 1.2]", &cone);
-    assert!(askew.len() == 1 && askew[0].contains("meets left, which holds at the edge"), "{askew:?}");
+    let inclined = warned("from=[0, 1.4], to=[1, 1.2]", &cone);
+    assert!(inclined.len() == 1 && inclined[0].contains("meets left, which holds at the edge"), "{inclined:?}");
     assert!(warned("from=[0.5, 1.3], to=[1.5, 1.1]", &cone).is_empty());
 }
 
@@ -434,7 +434,11 @@ fn sections_beside_what_acts_are_warned_of() {
     let strip = "[[prescribed]]\nfrom = [2, 2]\nto = [6, 2]\ndisplacement = [0, -0.1]";
     let level = |y: f64| format!("from = [0, {y}]\nto = [8, {y}]");
     let upright = |x: f64| format!("from = [{x}, 0]\nto = [{x}, 4]");
-    assert_eq!([1.0, 1.25, 2.0, 2.75, 3.0].map(|y| reports(&level(y), strip)), [0, 1, 1, 1, 0], "level, beside a strip");
+    assert_eq!(
+        [1.0, 1.25, 2.0, 2.75, 3.0].map(|y| reports(&level(y), strip)),
+        [0, 1, 1, 1, 0],
+        "level, beside a strip"
+    );
     assert_eq!([1.0, 2.5, 4.0, 5.5, 7.0].map(|x| reports(&upright(x), strip)), [0, 1, 0, 1, 0], "upright, at its ends");
     let footing = "[footing]\nfrom = [2, 4]\nto = [6, 4]\ndisplacement = [0, -0.1]";
     assert_eq!([3.25, 3.75, 4.0].map(|y| reports(&level(y), footing)), [0, 0, 0], "where the material ends");

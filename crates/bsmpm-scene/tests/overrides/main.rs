@@ -194,8 +194,9 @@ fn the_full_case_in_si() {
     let within = Some([[0.0, 0.0, 0.0], [2.0, 1.0, 0.0]]);
     assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { of: Counted { made: Made::All, within } });
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
-    let reports =
-        |what: &str| case.warnings.iter().filter(|warning| warning.starts_with("rigid.") && warning.contains(what)).count();
+    let reports = |what: &str| {
+        case.warnings.iter().filter(|warning| warning.starts_with("rigid.") && warning.contains(what)).count()
+    };
     let (thin, placed) = (reports("points on its two sides share nodes"), reports("a stage places body.5 at it"));
     let cut = case.warnings.iter().filter(|warning| warning.contains("of the section at the start")).count();
     let coarse = case.warnings.iter().filter(|warning| warning.contains("cells per wavelength")).count();

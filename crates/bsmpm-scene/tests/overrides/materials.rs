@@ -92,7 +92,8 @@ fn band_widths_are_warned_of_where_they_were_not_measured() {
                 sensitivity = 3, softening_strain = 2, band_width = 0.1 }";
     let reports = |base: &str, set: &[&str]| {
         let warnings = valid(base, &[&[clay], set].concat()).warnings;
-        let found: Vec<_> = warnings.into_iter().filter(|warning| warning.contains("do the work of 2 of them")).collect();
+        let found: Vec<_> =
+            warnings.into_iter().filter(|warning| warning.contains("do the work of 2 of them")).collect();
         assert!(found.len() <= 1, "{found:?}");
         found.concat()
     };
@@ -157,7 +158,7 @@ fn strength_that_falls_in_a_stage_takes_the_friction_of_rigid_bodies_and_strips_
     // Of the start, and from 0.25 s on.
     let friction = |t: f64| {
         let boundary = bsmpm_scene::model::model_at::<PlaneStrain, 2>(&case, t).unwrap().boundary;
-        [boundary.rigid[0].friction, boundary.strips[0].contact.expect("it rubs").law.friction]
+        [boundary.rigid[0].friction, boundary.strips[0].contact.expect("it has friction").law.friction]
     };
     let (start, later) = (friction(0.0), friction(0.3));
     assert!((start[0] - 0.4 / 1.25).abs() < 1e-15 && (start[1] - 0.5 / 1.25).abs() < 1e-15, "{start:?}");

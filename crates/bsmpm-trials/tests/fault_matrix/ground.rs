@@ -184,7 +184,7 @@ fn copy_all(from: &Path, to: &Path) {
 }
 
 /// Everything that must be the same: histories, steps but for the seconds and messages that they took (who goes on
-/// numbers the unknowns anew), frames, the state at the end.
+/// numbers the unknowns again), frames, the state at the end.
 pub fn results(directory: &Path) -> Results {
     let read = |name: &str| (name.to_owned(), std::fs::read(directory.join(name)).unwrap());
     let mut results: Results = ["history.csv", LIST].map(read).into();

@@ -173,7 +173,10 @@ fn ground_that_leaves_a_drained_face_is_reported() {
     let load = "traction.0.stress=[0, -1e5]";
     let short = "analysis={ type = \"consolidation\", end = \"5e5 s\", dt = \"500 s\", growth = 1.2 }";
     let reported = run("face", &[face, load, short]);
-    assert!(reported.len() == 2 && reported[0].contains("moved off") && reported[1].contains("is sealed"), "{reported:?}");
+    assert!(
+        reported.len() == 2 && reported[0].contains("moved off") && reported[1].contains("is sealed"),
+        "{reported:?}"
+    );
     let light = run("light", &[face, "traction.0.stress=[0, -8e3]", short]);
     assert!(light.is_empty(), "{light:?}");
     let surface = run("surface", &[load, short]);
@@ -340,7 +343,11 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
         scratch.write("case.toml", case);
         reported.push(scratch.mpirun(ranks, &["case.toml", "-o", name]).expect(0).stderr);
     }
-    assert!(reported[1].contains("pore pressures stay") && !reported[3].contains("pore pressures stay"), "{}", reported[0]);
+    assert!(
+        reported[1].contains("pore pressures stay") && !reported[3].contains("pore pressures stay"),
+        "{}",
+        reported[0]
+    );
     let tables = runs.map(|(name, _)| history(&scratch.path(name)));
     let moved = [0, 1, 2, 3, 4].map(|k| *tables[k].get("max-displacement").unwrap().last().unwrap());
     println!("moved {moved:?} m");

@@ -126,7 +126,7 @@ at = [6, 0.5]
 quantity = "energy"
 "#;
 
-/// What sides and base hold is found anew, with the lift's weight, and the columns beside go on: nothing drifts once
+/// What sides and base hold is found again, with the lift's weight, and the columns beside go on: nothing drifts once
 /// its waves have left. The same on any ranks and over restarts, one of them right after the stage. A base that held
 /// the building may absorb after it.
 #[test]

@@ -146,7 +146,10 @@ fn a_lift_loads_the_water_below_and_both_drain_through_its_top() {
     println!("balance {balance:e}");
     assert!(balance < 1e-7, "{balance:e}");
     let covered = warnings(&changed(LIFTED, "deactivate = [\"ground\"]\n", ""));
-    assert!(covered.iter().any(|warning| warning.contains("drain.0 goes on draining under what is placed")), "{covered:?}");
+    assert!(
+        covered.iter().any(|warning| warning.contains("drain.0 goes on draining under what is placed")),
+        "{covered:?}"
+    );
     // Before, at and after the stage.
     repeats(&scratch, &["base", "within", "top-y", "crest"], &["49", "50", "51", "60"]);
 }
@@ -270,7 +273,10 @@ fn a_lift_comes_with_the_suction_of_its_time() {
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
     let reported = manifest(&scratch.path("whole")).warnings;
-    assert!(reported.iter().any(|warning| warning.contains("stage.0.add: there is no drain on body.1")), "{reported:?}");
+    assert!(
+        reported.iter().any(|warning| warning.contains("stage.0.add: there is no drain on body.1")),
+        "{reported:?}"
+    );
     let found = history(&scratch.path("whole"));
     // Under its own weight what pores hold bears little: p is near that of still water, gamma_w (0.45 - 0.875) m.
     let (suction, still) = (at(&found, "within", 0.255), 9810.0 * (0.45 - 0.875));

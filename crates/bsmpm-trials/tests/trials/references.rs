@@ -28,8 +28,8 @@ fn what_presses_on_the_bottom_of_a_silo_is_janssens() {
         let found = run("silo.toml", &["grid.cell=0.5", &poisson, "check=[]"]);
         for lifts in 1..=8 {
             let (t, depth) = (f64::from(lifts), 2.0 * f64::from(lifts));
-            let rubs = friction * ratio / 2.0;
-            let janssen = 15e3 / rubs * (1.0 - (-rubs * depth).exp());
+            let has_friction = friction * ratio / 2.0;
+            let janssen = 15e3 / has_friction * (1.0 - (-has_friction * depth).exp());
             let pressure = at(&found, "bottom-y", t) / 2.0;
             assert!((pressure / janssen - 1.0).abs() < slack, "{poisson} {depth} m: {pressure}, {janssen}");
             let all = at(&found, "bottom-y", t) + at(&found, "wall-y", t);

@@ -203,8 +203,8 @@ fn a_round_column_that_slides_is_the_same_on_2_x_2_ranks_whatever_couples_their_
             scratch.mpirun(ranks, &arguments).expect(0);
             agree(&scratch.path(&directory), &scratch.path("out1"));
         }
-        let anew = steps(&scratch.path("out4"));
-        println!("{further:?}: imbalance {:?}", anew.get("imbalance").unwrap().last());
+        let afresh = steps(&scratch.path("out4"));
+        println!("{further:?}: imbalance {:?}", afresh.get("imbalance").unwrap().last());
     }
 }
 

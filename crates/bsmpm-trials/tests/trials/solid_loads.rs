@@ -209,9 +209,10 @@ fn a_plate_across_a_slice_is_the_strip_of_plane_strain() {
         boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
         body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 0.5, 1] }, points_per_cell = 4 }]\n\
         footing = { rectangle = { lower = [0.5, 0, 1], upper = [1, 0.5, 1] }, displacement = [AHEAD, 0, -0.005], base = BASE }";
-    // What rubs in soil that yields needs far smaller steps.
-    let rubs = "{ friction_coefficient = 0.1, separates = true }";
-    for (base, ahead, cohesion) in [("\"smooth\"", "0", "1 kPa"), ("\"rough\"", "0", "1 kPa"), (rubs, "0.02", "1 MPa")]
+    // What has friction in soil that yields needs far smaller steps.
+    let has_friction = "{ friction_coefficient = 0.1, separates = true }";
+    for (base, ahead, cohesion) in
+        [("\"smooth\"", "0", "1 kPa"), ("\"rough\"", "0", "1 kPa"), (has_friction, "0.02", "1 MPa")]
     {
         let run = |geometry: &str, ranks: usize| {
             let geometry = geometry.replace("BASE", base).replace("AHEAD", ahead);
@@ -235,9 +236,9 @@ fn a_plate_across_a_slice_is_the_strip_of_plane_strain() {
     }
 }
 
-/// What rubs is rubbed against its motion, also along none of the axes.
+/// Friction acts against the motion, also along none of the axes.
 #[test]
-fn a_plate_that_slides_askew_has_its_friction_against_its_motion() {
+fn a_plate_that_slides_obliquely_has_its_friction_against_its_motion() {
     let ground = "geometry = \"3d\"\ngrid = { lower = [0, 0, 0], upper = [2, 2, 1.25], cell = 0.25, degree = \"quadratic\" }\n\
         boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
         body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 2, 1] }, points_per_cell = 2 }]\n\

@@ -1,9 +1,9 @@
 //! What is reported of lines, places and sections in a solid: the closed forms of a block at rest and of a bar that
 //! bends and twists, the same on any number of ranks and however a run is cut.
 
+use super::observations::goes_the_same_way;
 use super::solid::{PLANE, slice};
 use super::solid_loads::BAR;
-use super::observations::goes_the_same_way;
 use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{all_finite, all_frames, at, history, manifest};
@@ -221,7 +221,11 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
             }
             for (name, expected, scale) in expected {
                 let reported = at(&rows, &format!("{}-{name}", of.0), frame.time);
-                assert!((reported - expected).abs() <= 1e-11 * scale, "{dims}, {} {name}: {reported} for {expected}", of.0);
+                assert!(
+                    (reported - expected).abs() <= 1e-11 * scale,
+                    "{dims}, {} {name}: {reported} for {expected}",
+                    of.0
+                );
             }
         }
         println!("{dims} axes: points in boxes {counts:?}");

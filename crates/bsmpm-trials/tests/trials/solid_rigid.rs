@@ -5,7 +5,7 @@ use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{at, history};
 
-/// A rigid block that rubs is pressed into sand and then along it.
+/// A rigid block with friction is pressed into sand and then along it.
 const PLANE: &str = r#"
 geometry = "plane-strain"
 [analysis]
@@ -148,7 +148,7 @@ fn a_block_slides_on_rigid_terrain_and_goes_on_to_the_bit_on_1_and_2_ranks() {
 }
 
 #[test]
-fn a_block_stays_on_rigid_terrain_that_rubs_more_than_it_falls() {
+fn a_block_stays_on_rigid_terrain_with_more_friction_than_it_falls() {
     let scratch = Scratch::with_case(&sliding(0.6));
     scratch.direct(&["case.toml", "-q", "-o", "whole"]).expect(0);
     let found = history(&scratch.path("whole"));

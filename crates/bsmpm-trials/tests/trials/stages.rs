@@ -393,7 +393,8 @@ fn a_stage_divides_the_strength_under_the_stress_that_is_there() {
         // The Cauchy stress is the Kirchhoff stress over J = 1 - 8e-5.
         assert!((deviator(t) - 0.4).abs() < 1e-4, "{t}: {}", deviator(t));
     }
-    let reported: Vec<_> = manifest(&scratch.path("whole")).stages.iter().map(|stage| stage.strength_reduction).collect();
+    let reported: Vec<_> =
+        manifest(&scratch.path("whole")).stages.iter().map(|stage| stage.strength_reduction).collect();
     assert_eq!(reported, [None, Some(2.0), Some(1.0)]);
     repeats(&scratch, &["top-y", "stress-xx", "stress-yy"], &["3", "4", "5", "6", "7"]);
 }

@@ -7,7 +7,8 @@ use crate::tensor::Vector;
 pub struct Contact {
     /// -  coefficient of friction mu
     pub friction: f64,
-    /// whether material comes off it; else its normal component is held both ways, and nothing rubs where it pulls
+    /// whether material comes off it; else its normal component is held both ways, and there is no friction where it
+    /// pulls
     pub lifts: bool,
 }
 

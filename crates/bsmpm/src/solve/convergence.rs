@@ -165,7 +165,7 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D
     }
     let mut du = du.to_vec();
     problem.nodes.extend(&problem.model.grid, &mut du, problem.halo);
-    let mut penalty = problem.grips.energy(&du);
+    let mut penalty = problem.attachments.energy(&du);
     penalty += &rigid.energy(&du, problem.halo);
     let penalty = problem.halo.total(&[penalty]);
     (work - penalty[0]).abs()

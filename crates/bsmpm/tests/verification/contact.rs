@@ -86,8 +86,8 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
     let way = mean(&scene.points, |p| scene.points.u[p][0]);
     let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
     assert!(books.closure(now).abs() < 1e-6 * now.kinetic, "the books close: {:.1e}", books.closure(now));
-    let rubbed = friction * theta.cos() * weight(&scene) * way;
-    assert!((dissipated / rubbed - 1.0).abs() < 0.01, "{dissipated} of {rubbed} J");
+    let friction_work = friction * theta.cos() * weight(&scene) * way;
+    assert!((dissipated / friction_work - 1.0).abs() < 0.01, "{dissipated} of {friction_work} J");
     let rigid = [0.5 * (END - RAMP).powi(2) + 0.5 * RAMP * (END - RAMP) + RAMP * RAMP / 6.0, END - 0.5 * RAMP];
     (way / (a * rigid[0]) - 1.0, velocity(&scene.points) / (a * rigid[1]) - 1.0, iterations)
 }

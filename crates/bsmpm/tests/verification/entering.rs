@@ -76,9 +76,9 @@ fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let (model, points, halo) = (&scene.model, &scene.points, &scene.halo());
     let shape = Shape::at(&model.grid, points).expect("points inside");
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), halo).expect("loads on material");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
     let mut stiffness = Dense::new(&model.grid);
-    let scene = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
+    let scene = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo };
     stiffness::assemble(&scene, None, &mut stiffness).expect("a matrix");
     stiffness.conditions()
 }

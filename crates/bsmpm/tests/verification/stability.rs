@@ -60,8 +60,8 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
     let time = (step.t - step.dt, step.dt);
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = Nodes::map(model, &shape, points, time, &halo).expect("a mapping");
-    let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), time);
-    let scene = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), time);
+    let scene = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let residual = Residual::of(&scene, u);
     let linearised = Linearised::at(&scene, &residual);
     let free: Vec<usize> = (0..u.len()).filter(|&c| nodes.free[c]).collect();

@@ -135,7 +135,7 @@ pub fn shell_failures(petsc: &Petsc) -> Result<(), String> {
             solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map_err(text)?;
             let left = relative_residual(petsc, &matrix, &b, &x)?;
             expect(left < 1e-10, &format!("{method} leaves {left:e} after a failure"))?;
-            expect(inner.calls[0] == 2, "what failed is built anew")?;
+            expect(inner.calls[0] == 2, "what failed is built again")?;
         }
         // One rank alone: none may go on, whichever notices. Its set-up calls nothing collective.
         let (mut inner, mut ksp, mut count) = (Inner::new(petsc, &matrix)?, outer(petsc, method)?, 0);
