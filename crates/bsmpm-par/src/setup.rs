@@ -1,4 +1,4 @@
-//! What a run needs of its case beside the model: the first cut, the linear solver, what is reported it in the
+//! What a run needs of its case beside the model: the first cut, the linear solver, what is reported of it in the
 //! manifest.
 
 use bsmpm::error::StepError;

@@ -239,7 +239,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         [numbers[0] as u64, numbers[1] as u64]
     }
 
-    /// What acts at once moves ground and water as no step before it reports.
+    /// What acts at once moves ground and water as no step before it shows.
     fn begin_afresh(&mut self) {
         self.stepper.begin_stage();
         self.points.forget_flow();

@@ -187,7 +187,7 @@ fn everywhere<const D: usize>(mut own: Points<D>, halo: &dyn Halo) -> Points<D> 
     all
 }
 
-/// Steps a column, and says what it is then to the nodes of its face.
+/// Steps a column, and gives what it is then to the nodes of its face.
 fn advance<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     face: &Support<D>,

@@ -263,7 +263,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         })
     }
 
-    /// What reports how far the points reach.
+    /// What shows how far the points reach.
     pub fn reaching<'a>(&'a self, points: &'a Points<D>) -> Reaching<'a, D> {
         Reaching { grid: &self.grid, points, reach: &self.boundary.reach, weight: K::weight }
     }

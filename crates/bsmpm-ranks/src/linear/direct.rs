@@ -15,7 +15,7 @@ use petsc_rs::{PcFailure, ShellPc};
 
 /// Largest relative residual of a solution by a factor of single precision, which a quasi-Newton direction can do with.
 /// It is 1e-7 in dynamics; in statics about 1e-9 n/(1 - 2 nu), n the unknowns of a body in one piece. One right-hand
-/// side reports for all of a step: what it does not excite, it does not show.
+/// side shows for all of a step: what it does not excite, it does not show.
 const NEAR: f64 = 1e-2;
 
 /// What is known of the factor.

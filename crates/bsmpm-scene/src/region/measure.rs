@@ -1,4 +1,4 @@
-//! The volume of a shape less others, of which no formula reports: vertical lines, the closer the rougher the shape.
+//! The volume of a shape less others, for which there is no formula: vertical lines, the closer the rougher the shape.
 
 use super::solid::{Section, SolidShape};
 

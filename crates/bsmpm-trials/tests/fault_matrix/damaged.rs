@@ -193,7 +193,7 @@ const FORGED: [(&str, &str, &str); 18] = [
     ("stranger", "b_e", "cannot be used"),
 ];
 
-/// One number of an array, as 64 bits, with what is reported it.
+/// One number of an array, as 64 bits, with what is reported of it.
 const NUMBERS: [(&str, usize, u64, &str); 16] = [
     ("id", 7, 8, "is there twice"),
     ("id", 7, 1 << 40, "is there twice"),

@@ -1,4 +1,4 @@
-//! What is accepted as converged, what is not, and what is reported it.
+//! What is accepted as converged, what is not, and what is reported of it.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

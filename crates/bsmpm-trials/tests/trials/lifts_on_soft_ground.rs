@@ -98,7 +98,7 @@ fn terzaghi(first: impl Fn(f64) -> f64, t: f64) -> f64 {
     (0..200).map(wave).map(|k| first(k) * (-k * k * t).exp()).sum()
 }
 
-/// What a run of a case is reported before its first step.
+/// What a run of a case warns of before its first step.
 fn warnings(case: &str) -> Vec<String> {
     let scratch = Scratch::with_case(case);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "out", "--max-steps", "1"]).expect(75);

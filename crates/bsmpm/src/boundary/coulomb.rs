@@ -1,4 +1,4 @@
-//! Unilateral contact with Coulomb's friction, whatever has it: its law, its statuses, what is reported it.
+//! Unilateral contact with Coulomb's friction, whatever has it: its law, its statuses, what is reported of it.
 
 use crate::tensor::Vector;
 

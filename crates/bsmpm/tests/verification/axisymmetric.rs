@@ -189,7 +189,7 @@ fn volumes_of_cells_and_functions_are_those_of_the_sector() {
         if order == 1 {
             continue; // functions that are constant in a cell have no Greville place
         }
-        // sum_I r_I int N_I = int r dV, r_I the Greville places: the moment reports a wrong mean of a function.
+        // sum_I r_I int N_I = int r dV, r_I the Greville places: the moment shows a wrong mean of a function.
         let r = |node: usize| grid.axes()[0].lowered_greville(grid.node_at(node)[0]);
         let moment: f64 = (0..grid.nodes()).map(|node| r(node) * grid.lowered_volume::<Axisymmetric>(node)).sum();
         let exact = grid.axes()[0].length().powi(3) / 3.0 * 1.5;

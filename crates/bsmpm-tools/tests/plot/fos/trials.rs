@@ -1,4 +1,4 @@
-//! Which trials are made, and that no more than the clock reports how many at a time.
+//! Which trials are made, and that no more than the clock decides how many at a time.
 
 use std::fs;
 use std::os::unix::process::ExitStatusExt;

@@ -5,7 +5,7 @@ use crate::nodal::Nodal;
 use crate::tensor::Vector;
 
 /// Part of a cell within which material cannot have come since the last step, if its node was not free to move then:
-/// what F reports of the gap is off by the curvature of the motion.
+/// what F says of the gap is off by the curvature of the motion.
 const KEPT: f64 = 0.05;
 
 /// Times the force by which statuses may be contradicted, by which friction may be off Coulomb's law for the slip, or
