@@ -88,49 +88,50 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
     match meeting.other {
         Other::Rigid(_) => {
             let message = format!(
-                "E0437: {other} continues the surface of {name} and moves differently. The soil cannot follow both. Use \
-                 [[prescribed]] for both, or leave a cell between them."
+                "{other} continues the surface of {name} and moves differently. The soil cannot follow both. Use [[prescribed]] \
+                 for both, [[rigid]] for both, or leave a cell between them."
             );
             record.error("from", message, report);
         }
         Other::Corner { apart, .. } => {
             let message = format!(
-                "E0438: at the common corner of {name} and {other} their prescribed displacements differ by {apart:.3e} m. The soil \
-                 cannot follow both. Use components = \"normal\", or leave a cell between them."
+                "{name} and {other} share a corner, and their motions differ there by {apart:.3e} m in a direction that both \
+                 hold. The soil cannot follow both. Use components = \"normal\" in both, or leave a cell between them."
             );
             record.error("from", message, report);
         }
         Other::Strip { act_together: false, .. } => {
             let message = format!(
-                "E0439: {other} meets {name}, moves differently and acts from another time on. The soil cannot follow both. Start \
-                 both in one stage, or leave a cell between them."
+                "{other} meets {name}, moves differently, and acts since another time. The soil cannot follow both. Let both \
+                 act from the same time, or leave a cell between them."
             );
             record.error("from", message, report);
         }
         Other::Strip { sliding, edge, .. } if sliding > ROUNDING * edge => {
             let message = format!(
-                "E0440: {other} meets {name}, and their motions along the surface differ by {sliding:.3e} m. The soil cannot follow \
-                 both. Use components = \"normal\" in one, or leave a cell between them."
+                "{other} meets {name}, both hold the soil along their surface, and their motions along it differ by \
+                 {sliding:.3e} m. The soil cannot follow both. Let one of them hold the normal component only, or leave a cell \
+                 between them."
             );
             record.error("from", message, report);
         }
         Other::Strip { along, edge, .. } if along > ALONG * edge => {
             let message = format!(
-                "E0441: {other} meets {name}, and one of them moves {along:.3} m along the surface (at most {:.3} m, {ALONG} \
-                 cells). The soil cannot follow both. Leave a cell between them.",
+                "{other} meets {name} and moves differently, and one of them moves {along:.3} m along its surface (at most \
+                 {:.3} m, {ALONG} cells). The soil cannot follow both. Leave a cell between them.",
                 ALONG * edge
             );
             record.error("from", message, report);
         }
         Other::Strip { apart, edge, .. } => {
             let value = format!("shares its end with {other}");
-            let reason = "they move differently: the displacement changes from one to the other over about one cell, and the reaction \
-                          there is divided between them";
+            let reason = "they move differently: the motion changes from one to the other over about one cell, and the reaction in \
+                          that cell is divided between them";
             report.note(&name, &value, reason);
             if apart > APART * edge {
                 report.warn(format!(
-                    "W0422: {name} and {other} meet, and their displacements differ by {apart:.3} m ({:.1} cells). The cell between \
-                     them is sheared that far. Reduce the displacement, or use larger cells there.",
+                    "{name} and {other} meet, and their motions differ by {apart:.3} m, {:.1} cells: the material between \
+                     them is deformed within one cell. Reduce the displacement, or use larger cells there.",
                     apart / edge
                 ));
             }

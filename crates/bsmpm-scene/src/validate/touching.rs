@@ -28,8 +28,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for Overlap { one, other, t } in &overlaps {
         let [name, of] = [one, other].map(|number| &case.rigid[*number].name);
         let message = format!(
-            "E0435: the paths of rigid bodies `{name}` and `{of}` overlap at t = {t:.4}. Rigid bodies do not act on each other, so \
-             the run would stop. Change a path, or reduce analysis.end."
+            "rigid bodies `{name}` and `{of}` overlap at t = {t:.4} by their paths. Rigid bodies do not touch each other, and the \
+             run would end there. Change their paths, or end the analysis before."
         );
         if let Some(record) = root.records("rigid").get(*other) {
             record.error("name", message, report);
@@ -100,19 +100,14 @@ fn check_meetings(case: &Case, root: &Record, report: &mut Report<'_>) {
             }
             let cells = width / case.grid.shortest();
             let [name, of] = [one, other].map(|number| &case.rigid[number].name);
-            let off = 100.0 / cells;
+            let message = format!(
+                "rigid bodies `{name}` and `{of}` meet in one plane and move differently: forces are about {:.0} % too large with \
+                 {cells:.0} cells across the smaller face. Use [[prescribed]] segments, or smaller cells.",
+                100.0 / cells
+            );
             match root.records("rigid").get(other) {
-                Some(record) if cells < FEWEST_CELLS => {
-                    let message = format!(
-                        "E0436: the faces of `{name}` and `{of}` continue each other and move differently. Forces are {off:.0} % \
-                         too large on {cells:.0} cells. Use [[prescribed]] segments, or smaller cells."
-                    );
-                    record.error("name", message, report);
-                }
-                _ => report.warn(format!(
-                    "W0421: the faces of `{name}` and `{of}` continue each other and move differently. Forces are {off:.0} % too \
-                     large on {cells:.0} cells. Use [[prescribed]] segments, or smaller cells."
-                )),
+                Some(record) if cells < FEWEST_CELLS => record.error("name", message, report),
+                _ => report.warn(message),
             }
         }
     }
