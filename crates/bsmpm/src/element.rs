@@ -53,16 +53,16 @@ pub struct Control {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ElementError {
     /// The stress at the start is none of the material.
-    #[error("the initial stress exceeds the strength of the material (plastic strain {0:.1e}). Reduce `pressure`, or change `k0`")]
+    #[error("the stress at the start is beyond the material's strength: plastic strain of {0:.1e} at once")]
     BeyondYield(f64),
     /// The stress at the start pulls, or is none, and the material's stiffness is that of its pressure.
-    #[error("the material has no stiffness without pressure. Give `pressure` in its table [element]")]
+    #[error("the material has no state without pressure: give it one at the start")]
     NoPressure,
     /// The material has no response at the start.
-    #[error("the material cannot have the initial stress: {0}")]
+    #[error("no stress at the start: {0}")]
     Start(MaterialError),
     /// No state carries what is wanted.
-    #[error("the material cannot carry the prescribed stress beyond {done:.4} of the stage ({reason}). Prescribe a strain instead")]
+    #[error("no state of the material carries the stress that is wanted {done:.4} of the way; {reason}")]
     NoEquilibrium {
         /// part of the stage that was reached
         done: f64,

@@ -146,7 +146,9 @@ fn warn_of_nothing(record: &Record, key: &str, load: [f64; 3], report: &mut Repo
 
 /// Says that no body lies at a place of a load, m.
 fn no_body(at: &[f64]) -> String {
-    format!("E0233: no body lies at {at:?} at the start. Move the load to the surface of a body.")
+    format!(
+        "E0401: no body lies at {at:?} at the start. Move it onto a body, at most half the spacing of material points away."
+    )
 }
 
 /// A load has a body under every part of it.
@@ -249,7 +251,7 @@ pub(super) fn increasing<'a>(
 ) -> Option<impl Iterator<Item = &'a [f64]> + use<'a>> {
     let rows = record.rows(key)?;
     if rows.is_empty() {
-        record.error(key, "E0401: the table is empty. Give at least one row.", report);
+        record.error(key, "E0435: the table is empty. Give at least one row.", report);
         return None;
     }
     if let Some(late) = (1..rows.len()).find(|&k| rows[k].numbers[0] <= rows[k - 1].numbers[0]) {

@@ -149,7 +149,7 @@ fn friction(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Op
     let given = record.number("friction_coefficient")?;
     let friction = factor.map_or(given, |factor| given / factor);
     if friction != given {
-        let reason = format!("{given} divided by strength_reduction.factor = {}", factor.unwrap_or(1.0));
+        let reason = format!("divided by strength_reduction.factor = {}", factor.unwrap_or(1.0));
         report.note(record.path_of("friction_coefficient"), format!("{friction}"), reason);
     }
     if friction > MOST_SHOWN_FRICTION {

@@ -157,7 +157,7 @@ fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Ve
         }
     }
     if rows.is_empty() {
-        record.error("path", "E0401: the path has no row after t = 0. Give at least one row [t, ux, uy].", report);
+        record.error("path", "E0435: the path has no row after t = 0. Give at least one row [t, ux, uy].", report);
         return None;
     }
     warn_of_late(&record.path_of("path"), rows.iter().map(|row| row.0), end, report);

@@ -155,7 +155,7 @@ pub const STRIPS: &[Row] = &[
         "E0403 .. [0.0, 0.1]",
     ),
     row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0], [0, 0, 0]]", "prescribed.1.path", "E0402 .. t = 0"),
-    row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "E0401 .. after t = 0"),
+    row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "E0435 .. after t = 0"),
     row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[-1, 0, 0]]", "prescribed.1.path", "out of range"),
     row(
         "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
@@ -229,10 +229,10 @@ pub const STRIPS: &[Row] = &[
     row(STRESS, "stress_path = [[0.5, 1.0, \"1 m\"]]", "traction.0.stress_path", "`m` is a unit of length"),
     row("force = [0.0, \"-1 kN/m\"]", "", "point_load.0", "missing: one of force, force_path").up(2),
     row("moment  = 100.0", "force_path = [[0.5, 0.0, 1.0]]", "rigid.1.force_path", "only one of force, force_path"),
-    row("ramp = \"0.5 s\"", "amplitude = []", "traction.0.amplitude", "E0401"),
+    row("ramp = \"0.5 s\"", "amplitude = []", "traction.0.amplitude", "E0435"),
     row("ramp = \"0.5 s\"", "amplitude = [[0.5, 1.0], [0.5, 0.0]]", "traction.0.amplitude", "E0402 .. 0.5"),
     row("ramp = \"0.5 s\"", "amplitude = [[0.5, \"1 kPa\"]]", "traction.0.amplitude", "expected"),
-    row(SHAKEN, "[]", "shaking.acceleration", "E0401"),
+    row(SHAKEN, "[]", "shaking.acceleration", "E0435"),
     row(SHAKEN, "[[0.1, 0.0, 0.0]]", "shaking.acceleration", "E0415"),
     row(SHAKEN, "[[0.1, 1.0, 0.0], [0.1, 0.0, 0.0]]", "shaking.acceleration", "E0402 .. 0.1"),
     row(SHAKEN, "[[0.1, 1.0]]", "shaking.acceleration", "found a list of 2"),
@@ -241,9 +241,9 @@ pub const STRIPS: &[Row] = &[
     // Points of the block are 0.25 m apart, those of sand 0.167 m and of clay 0.25 m.
     row("from = [1.0, 2.5]\nto   = [\"2 m\", 2.5]", "from = [1.25, 2.63]\nto = [1.75, 2.63]", "footing.from", NOBODY),
     row("from = [2.5, 2.5]\nto   = [3.0, 2.5]", "from = [2.5, 2.63]\nto = [3.0, 2.63]", "prescribed.1.from", NOBODY),
-    row("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "from = [0.0, 1.4]\nto = [1.0, 1.4]", "traction.0.from", "E0233"),
-    row("to   = [1.0, 1.25]", "to = [1.0, 1.5]", "traction.0.from", "E0233 .. [0.").up(1),
-    row("at = [3.5, 1.25]", "at = [2.25, 1.45]", "point_load.0.at", "E0233 .. [2.25, 1.45]"),
+    row("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "from = [0.0, 1.4]\nto = [1.0, 1.4]", "traction.0.from", "E0401"),
+    row("to   = [1.0, 1.25]", "to = [1.0, 1.5]", "traction.0.from", "E0401 .. [0.").up(1),
+    row("at = [3.5, 1.25]", "at = [2.25, 1.45]", "point_load.0.at", "E0401 .. [2.25, 1.45]"),
 ];
 
 /// Stress at the start, and the histories of the footing and of the pressure.

@@ -174,7 +174,7 @@ pub const SOLID: &[Row] = &[
     row("density = 2000", FLOWS, "drain.0.surface", "name a face of the grid").down(7),
     row("density = 2000", PERMEABLE, "material.soil.permeability", "expected").down(3),
     row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "three in 3-D"),
-    row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 1.9]", "point_load.0.at", "E0233 .. [3.9, 0.1, 1.9]"),
+    row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 1.9]", "point_load.0.at", "E0401 .. [3.9, 0.1, 1.9]"),
     row(FORCE, "force = \"-10 N\"", "point_load.0.force", "\"-10 N\": in 3-D it has three components"),
     row(FORCE, "force = [0.0, \"-10 N/m\"]", "point_load.0.force", "three components, [x, y, z], in N"),
     row(FORCE, "force = [0.0, 0.0, \"-10 kPa\"]", "point_load.0.force", "expected a force (N, kN, MN)"),

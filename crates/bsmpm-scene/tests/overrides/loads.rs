@@ -116,7 +116,7 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
     for (traction, reported) in [
         ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "bodies lie on both sides of it"),
         ("circle = { centre = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "E0201"),
-        ("circle = { centre = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "E0233"),
+        ("circle = { centre = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "E0401"),
         ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "only one of stress, pressure, "),
         (
             "from = [0.0, 1.25], circle = { centre = [0.5, 2.0], radius = 0.4 }, pressure = 1e3",
