@@ -155,7 +155,7 @@ fn fill_accuracy(
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     if record.word("geometry") == Some(Geometry::Solid) {
         let message =
-            "E0226: accuracy is not available in 3-D. Give the cells, points_per_cell, the steps and the tolerances.";
+            "E0226: presets are not available in 3-D. Give the cells, points_per_cell, the steps and the tolerances.";
         report.error(choice.origin, ACCURACY, message);
         return false;
     }

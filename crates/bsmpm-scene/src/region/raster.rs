@@ -187,13 +187,13 @@ mod tests {
             assert!(message.contains(what), "{message}");
         };
         let mut posts = rows(|_, _| 1.0);
-        says(&posts, 2.0, "is below the base, 2");
+        says(&posts, 2.0, "is below the base, 2 m");
         says(&posts, 1.0, "the body is empty");
         posts[7][0] += 0.1;
         says(&posts, 0.0, "no regular raster");
         let mut twice = rows(|_, _| 1.0);
         twice[3] = twice[2];
-        says(&twice, 0.0, "has its post twice");
-        says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "two posts along x and two along y");
+        says(&twice, 0.0, "is given twice");
+        says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "E0229");
     }
 }

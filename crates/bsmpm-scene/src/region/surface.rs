@@ -429,13 +429,13 @@ mod tests {
         };
         let block = cuboid([0.0; 3], [1.0; 3]);
         says(Vec::new(), "no triangle");
-        says(block[1..].to_vec(), "not closed: 3 of its edges");
+        says(block[1..].to_vec(), "open at 3 edges");
         let mut one_turned = block.clone();
         one_turned[..1].clone_from_slice(&turned(block[..1].to_vec()));
-        says(one_turned, "not closed: 3 of its edges");
-        says([block.clone(), turned(block.clone())].concat(), "encloses no volume");
+        says(one_turned, "open at 3 edges");
+        says([block.clone(), turned(block.clone())].concat(), "enclose no volume");
         says([block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(), "intersects itself");
-        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "turned inside out");
+        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "partly inside out");
         // Blocks with sides in common that overlap by little, and bars across each other, with sides in common and not.
         says([block.clone(), cuboid([0.99, 0.0, 0.0], [1.99, 1.0, 1.0])].concat(), "intersects itself");
         says([block.clone(), cuboid([0.3, 0.2, 0.99], [0.4, 0.5, 2.0])].concat(), "intersects itself");

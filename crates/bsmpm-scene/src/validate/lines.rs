@@ -68,7 +68,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
                  tens of per cent. Use \"automatic\"."
             ),
             C0Lines::Automatic => format!(
-                "W0217: grid.c0_lines: there is no C0 line at {place} ({reason}), as water flows. Stresses within three cells \
+                "W0217: grid.c0_lines: there is no C0 line at {place} ({reason}), because pore water flows. Stresses within three cells \
                  can be off by tens of per cent. Use smaller cells there."
             ),
         });
@@ -77,8 +77,8 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     let jumps = crossed.or(placed.first().map(|(place, _)| *place));
     if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, record)) {
         report.warn(format!(
-            "W0218: grid.c0_lines: material.{name} is undrained and has friction. At the C0 line {} its strength is off, loads \
-             by up to 4 %. Compare a run with friction_angle = 0 and the same strength.",
+            "W0218: grid.c0_lines: the undrained material.{name} has friction, and its strength is inaccurate at the C0 line \
+             {}. Loads can be off by 4 %. Compare a run with friction_angle = 0.",
             place_of(case, (axis, line))
         ));
     }
@@ -205,7 +205,7 @@ fn interfaces(case: &Case, found: &mut FoundLine) {
 }
 
 fn interface_of(a: &NamedMaterial, b: &NamedMaterial) -> String {
-    format!("strains jump at the interface of {} and {}", a.name, b.name)
+    format!("strains jump at the interface of `{}` and `{}`", a.name, b.name)
 }
 
 /// What is doubtful about an interface of two materials whose moduli and densities have these ratios.

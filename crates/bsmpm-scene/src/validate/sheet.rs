@@ -39,7 +39,7 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
         ("surface", sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>()))
     };
     let at_bodies = |all: Vec<Triangle>| match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
-        Some(at) => Err(format!("E0233: no body lies at {at:?} at the start. Move the surface to that of a body.")),
+        Some(at) => Err(format!("E0233: no body lies at {at:.3?} at the start. Move the surface to that of a body.")),
         None if all.is_empty() => {
             Err("E0201: no part of the sphere is inside the grid. Move it into the grid, or enlarge the grid.".into())
         }
@@ -136,14 +136,14 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
         let [from, to] = sides[0].ends;
         if sides.len() > 2 {
             return Err(format!(
-                "E0227: {} triangles share the edge from {from:?} to {to:?} (at most 2). Repair it with a mesh tool.",
+                "E0227: {} triangles share the edge from {from:?} to {to:?} (at most 2). Repair the surface with a mesh tool.",
                 sides.len()
             ));
         }
         if let [one, other] = &sides[..] {
             if one.upwards == other.upwards {
                 return Err(format!(
-                    "E0227: the normals of the triangles at the edge from {from:?} to {to:?} are inconsistent. Repair it with \
+                    "E0227: the normals of the triangles at the edge from {from:?} to {to:?} are inconsistent. Repair the surface with \
                      a mesh tool."
                 ));
             }

@@ -48,7 +48,7 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
     if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
         let message =
-            format!("E0233: no body lies at {from:?} to {to:?} at the start. Move it to the surface of a body.");
+            format!("E0233: no body lies at {from:.3?} to {to:.3?} at the start. Move it to the surface of a body.");
         record.error(key, message, report);
     }
 }

@@ -119,7 +119,7 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
     for (table, plate, path) in strips.chain(tractions) {
         let name = if table.0 == "footing" { "footing".into() } else { format!("{}.{}", table.0, table.1) };
         if plate.round {
-            path.into_iter().for_each(|_| doubt_rim(&name, found));
+            path.into_iter().for_each(|_| doubt_rim(&format!("`{name}`"), found));
             continue;
         }
         let segment = Segment { name, table, ends: [plate.lower, plate.upper], path };
@@ -132,7 +132,7 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
 /// Warns that a round rim follows no grid line.
 fn doubt_rim(name: &str, found: &mut FoundLine) {
     let doubt = format!(
-        "W0224: {name} has a round edge inside cells. It acts on up to a cell more than its radius, and its force is too \
+        "W0224: {name} has a round edge inside cells. Up to a cell more than its radius is loaded, and its force is too \
          large. Compare runs with two cell sizes."
     );
     found.doubts.insert(name.to_owned(), doubt);
@@ -241,7 +241,7 @@ fn rims(case: &Case, rigid: &Rigid, about: [f64; 2], corners: &[[f64; 2]], found
         let has_soil = |[x, y]: [f64; 2]| has_material(case, [x, y, from[1]], 2);
         let is_at = |shift: f64| ring(about, radius + shift * BEYOND * cell).any(has_soil);
         if pushes(rigid, 2) && is_at(-1.0) && is_at(1.0) {
-            doubt_rim(&format!("rigid `{}`", rigid.name), found);
+            doubt_rim(&format!("rigid body `{}`", rigid.name), found);
         }
     }
 }
@@ -249,8 +249,8 @@ fn rims(case: &Case, rigid: &Rigid, about: [f64; 2], corners: &[[f64; 2]], found
 /// Warns that the end of something lies inside a cell.
 fn inside_cell(name: &str, end: &str, axis: usize, at: f64) -> String {
     format!(
-        "W0225: the {end} of {name} at {} = {at} m lies inside a cell. It acts on up to a cell more, and its force is too \
-         large. Put a grid line there (grid.cell or grid.knots).",
+        "W0225: the {end} of {name} at {} = {at} m lies inside a cell. Up to a cell more of soil is loaded, and the \
+         force is too large. Put a grid line there (grid.cell or grid.knots).",
         NAMES[axis]
     )
 }
@@ -290,7 +290,7 @@ fn end(
     if !has_material(case, beyond, normal) {
         return;
     }
-    let reason = format!("strains are singular at the end of {name}");
+    let reason = format!("strains are singular at the end of `{name}`");
     let cell = axis.cell(axis.first_cell(|i| axis.breakpoint(i + 1) >= at[along] - axis.lower()).min(axis.cells() - 1));
     match grid_line(case, along, at[along] - axis.lower()) {
         Some(line) if line == 0 || line == axis.cells() => {}
@@ -304,8 +304,8 @@ fn end(
         _ if segment.path.is_none() => {}
         Some(_) => {
             let doubt = format!(
-                "W0226: the ends of {name} leave the grid lines, as it moves along its own length. It acts on up to a cell more, \
-                 and its force is too large. Use smaller cells."
+                "W0226: the ends of `{name}` leave the grid lines, as it moves along its own length. Up to a cell more of soil is \
+                 loaded, and the force is too large. Use smaller cells."
             );
             found.doubts.entry(name.clone()).or_insert(doubt);
         }
@@ -321,7 +321,10 @@ fn end(
         }
         None => {
             found.inside.push(name.clone());
-            found.doubts.entry(name.clone()).or_insert_with(|| inside_cell(name, "end", along, at[along]));
+            found
+                .doubts
+                .entry(name.clone())
+                .or_insert_with(|| inside_cell(&format!("`{name}`"), "end", along, at[along]));
         }
     }
 }
@@ -344,7 +347,7 @@ fn wall(case: &Case, segment: &Segment<'_>, normal: usize, found: &mut FoundLine
         case.bodies.iter().any(|body| is_in(body, &case.grid, middle))
     };
     if beside(-1.0) && beside(1.0) {
-        let reason = format!("{} restrains the soil on both sides", segment.name);
+        let reason = format!("`{}` restrains the soil on both sides", segment.name);
         found.lines.entry((normal, line)).or_insert(reason);
     }
 }
