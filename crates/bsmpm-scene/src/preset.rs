@@ -188,14 +188,15 @@ fn fill_accuracy(
     let filled = filling.filled;
     if filled && record.records("rigid").iter().any(|rigid| rigid.gives("free")) {
         report.warn(format!(
-            "W0201: {ACCURACY}: how far free rigid bodies move is not known in advance. Check that cells are small compared \
-             to them, and that they move less than a cell in a step."
+            "W0201: {ACCURACY}: how far free rigid bodies move is not known in advance. Check that cells are small \
+             compared to them, and that they move less than a cell in a step."
         ));
     }
     // With a purpose every key may be given because the purpose has filled it in.
     if !filled && !scene.seeks_limit_load() {
         report.warn(format!(
-            "W0202: {ACCURACY}: all keys that it would choose are given, so it has no effect. Delete it, or some of them."
+            "W0202: {ACCURACY}: all keys that it would choose are given, so it has no effect. Delete it, or some of \
+             them."
         ));
     }
     // The document is complete: under another word it would still be this case.
@@ -271,8 +272,8 @@ impl Completion<'_, '_> {
     fn doubt(&mut self, thin: Option<(f64, f64)>) {
         if let Some((side, cell)) = thin {
             self.report.warn(format!(
-                "W0203: {ACCURACY}: its cells of {cell} m are fewer than {FEWEST} across a body of {side} m. Stresses there are \
-                 inaccurate. Set grid.cell to at most {} m.",
+                "W0203: {ACCURACY}: its cells of {cell} m are fewer than {FEWEST} across a body of {side} m. Stresses \
+                 there are inaccurate. Set grid.cell to at most {} m.",
                 side / FEWEST
             ));
         }

@@ -261,8 +261,8 @@ fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result
     let cells: u128 = edges.iter().map(cut).sum();
     if cells * edges.len() as u128 * points_per_cell as u128 > MOST_WORK {
         return Err(format!(
-            "E0216: {} edges of the shape cut about {cells} cells, so that placing the material points takes too long. Use fewer \
-             edges, or larger cells.",
+            "E0216: {} edges of the shape cut about {cells} cells, so that placing the material points takes too long. \
+             Use fewer edges, or larger cells.",
             edges.len()
         ));
     }

@@ -363,8 +363,8 @@ fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Co
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
-            "W0204: {}: a friction coefficient of {friction} is above {MOST_SHOWN_FRICTION}, the largest that was verified. \
-             Steps may not converge. Use a smaller one, or \"fixed\".",
+            "W0204: {}: a friction coefficient of {friction} is above {MOST_SHOWN_FRICTION}, the largest that was \
+             verified. Steps may not converge. Use a smaller one, or \"fixed\".",
             face.path_of("friction_coefficient")
         ));
     }

@@ -52,8 +52,8 @@ impl Raster {
         if count[0].saturating_mul(count[1]) != rows.len() {
             let [x, y] = count;
             return Err(format!(
-                "E0229: {} heights are no regular raster: a spacing of {} m along x and {} m along y needs {x} x {y}. Add or \
-                 delete rows.",
+                "E0229: {} heights are no regular raster: a spacing of {} m along x and {} m along y needs {x} x {y}. \
+                 Add or delete rows.",
                 rows.len(),
                 spacing[0],
                 spacing[1]

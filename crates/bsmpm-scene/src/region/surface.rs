@@ -169,8 +169,8 @@ impl Surface {
             if !(0..=1).contains(&depth) && z - last > ROUNDING * height {
                 let [x, y] = at;
                 return Err(format!(
-                    "E0227: the surface intersects itself, or is partly inside out, near [{x:.6}, {y:.6}, {z:.6}]. Repair it \
-                     with a mesh tool."
+                    "E0227: the surface intersects itself, or is partly inside out, near [{x:.6}, {y:.6}, {z:.6}]. \
+                     Repair it with a mesh tool."
                 ));
             }
             (depth, last) = (depth - crossing, z);
@@ -237,8 +237,8 @@ fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), String> {
     match edges.values().find(|sides| sum(sides) != 0) {
         None => Ok(()),
         Some(sides) => Err(format!(
-            "E0227: the surface is open at {open} edges, first from {:?} to {:?}. Repair it with a mesh tool: weld vertices, \
-             fill holes, make normals consistent.",
+            "E0227: the surface is open at {open} edges, first from {:?} to {:?}. Repair it with a mesh tool: weld \
+             vertices, fill holes, make normals consistent.",
             sides[0].ends[0], sides[0].ends[1]
         )),
     }

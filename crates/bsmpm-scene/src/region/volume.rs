@@ -263,7 +263,8 @@ impl Filling {
         let rows = reached(&axes[2], [lower[2], upper[2]]).len() * n;
         if lines * (edges(whole) + cut.iter().map(edges).sum::<usize>() + rows) as u128 > MOST_WORK {
             return Err(
-                "E0216: the shape fills so many cells that placing the material points takes too long. Use larger cells."
+                "E0216: the shape fills so many cells that placing the material points takes too long. Use larger \
+                 cells."
                     .into(),
             );
         }

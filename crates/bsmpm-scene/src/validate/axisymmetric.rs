@@ -8,8 +8,8 @@ use crate::words::{Measurement, Side, Word};
 
 /// The face at the axis.
 const AXIS: Face = Face { axis: 0, upper: false };
-const SIDEWAYS: &str = "E0242: x is the radius of an axisymmetric case, so nothing can move or act along one direction x. Set \
-                        the x component to 0.";
+const SIDEWAYS: &str = "E0242: x is the radius of an axisymmetric case, so nothing can move or act along one direction \
+                        x. Set the x component to 0.";
 const ROTATION: &str =
     "E0242: a body of revolution cannot rotate in the plane of an axisymmetric case. Delete this key.";
 
@@ -30,8 +30,8 @@ fn cubic(case: &Case, report: &mut Report<'_>) {
     let meets_axis = |body: &Body| body.occupied(&case.grid)[0].start == 0;
     if case.grid.order == 3 && case.bodies.iter().any(meets_axis) {
         report.warn(
-            "W0234: grid.degree: cubic splines at the axis of symmetry are up to 2 % off for a uniform stress. Use \"quadratic\", \
-             which is within 0.2 %.",
+            "W0234: grid.degree: cubic splines at the axis of symmetry are up to 2 % off for a uniform stress. Use \
+             \"quadratic\", which is within 0.2 %.",
         );
     }
 }
@@ -42,8 +42,8 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
         && case.grid.lower()[0] != 0.0
     {
         let key = if grid.gives("knots") { "knots" } else { "lower" };
-        let message = "E0238: the grid of an axisymmetric case must begin at the axis, x = 0, as x is the radius. Set its \
-                       lower end to 0; empty cells cost nothing.";
+        let message = "E0238: the grid of an axisymmetric case must begin at the axis, x = 0, as x is the radius. Set \
+                       its lower end to 0; empty cells cost nothing.";
         grid.error(key, message, report);
     }
     let tables = std::iter::once(record).chain(record.records("stage")).filter_map(|table| table.record("boundary"));
@@ -55,8 +55,8 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
                     boundary.error(word, "E0239: this face is the axis of symmetry. Set it to \"roller\".", report);
                 }
             } else if found == Some(Support::FreeField) {
-                let message = "E0240: a free field shakes sideways, which is not axisymmetric. Use \"absorbing\", or a distant \
-                               \"roller\".";
+                let message = "E0240: a free field shakes sideways, which is not axisymmetric. Use \"absorbing\", or a \
+                               distant \"roller\".";
                 boundary.error(word, message, report);
             }
         }

@@ -11,8 +11,8 @@ use crate::report::{Report, listed, shortened};
 use crate::words::Geometry;
 use bsmpm::model::Regime;
 
-/// Part of a body in cells of one point each above which there is a warning: a face just beyond a grid line has a fifth, a
-/// tube with a wall of four fifths of the points' distance too, of a fifth all.
+/// Part of a body in cells of one point each above which there is a warning: a face just beyond a grid line has a
+/// fifth, a tube with a wall of four fifths of the points' distance too, of a fifth all.
 const ALONE: f64 = 0.3;
 /// Parts of the distance of points by which a box may be thinner: rounding.
 const ROUNDING: f64 = 1e-9;
@@ -65,7 +65,8 @@ fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option
                 "E0217: the axis of rotation has no direction, as all its components are zero. Correct it."
             }
             _ => {
-                "E0207: a body in a plane rotates about the normal of the plane. Delete `axis`, or use geometry = \"3d\"."
+                "E0207: a body in a plane rotates about the normal of the plane. Delete `axis`, or use geometry = \
+                 \"3d\"."
             }
         };
         spin.error("axis", message, report);
@@ -90,8 +91,8 @@ fn read(
     let points_per_cell = record.count("points_per_cell").map(|count| count as usize);
     if points_per_cell == Some(2) && grid.is_some_and(|grid| grid.order == 3) {
         report.warn(format!(
-            "W0209: {}: 2 material points per cell are too few for cubic splines. Stresses are off by several per cent. Use \
-             points_per_cell = 3, or grid.degree = \"quadratic\".",
+            "W0209: {}: 2 material points per cell are too few for cubic splines. Stresses are off by several per \
+             cent. Use points_per_cell = 3, or grid.degree = \"quadratic\".",
             record.path
         ));
     }
@@ -105,8 +106,8 @@ fn read(
     let name = record.text("name").map(str::to_owned);
     let body = Body { name, material: material?, region: region?, points_per_cell: points_per_cell?, velocity, spin };
     if grid.is_some_and(|grid| body.points(grid) == 0) {
-        let message = "E0219: the body is thinner than 1e-9 of a cell, so it has no material points. Make it thicker, or use \
-                       smaller cells.";
+        let message = "E0219: the body is thinner than 1e-9 of a cell, so it has no material points. Make it thicker, \
+                       or use smaller cells.";
         match record.record("box") {
             Some(record) => record.error("upper", message, report),
             None => record.error(shape::key(record), message, report),
@@ -124,7 +125,8 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
     let single = paths(&|body| body.points_per_cell == 1 && is_coarse(body, grid));
     if !single.is_empty() {
         report.warn(format!(
-            "W0210: {}: 1 material point per cell is too few for accurate stresses. Increase points_per_cell to 2 or more.",
+            "W0210: {}: 1 material point per cell is too few for accurate stresses. Increase points_per_cell to 2 or \
+             more.",
             listed(&single)
         ));
     }
@@ -134,8 +136,8 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
         let paths = paths(&|body| alone(body).is_some());
         let up_to = if paths.len() > 1 { "up to " } else { "" };
         report.warn(format!(
-            "W0211: {}: {up_to}{:.0} % of the body is thinner than the spacing of its material points. Bending there is \
-             unreliable. Use smaller cells, or increase points_per_cell.",
+            "W0211: {}: {up_to}{:.0} % of the body is thinner than the spacing of its material points. Bending there \
+             is unreliable. Use smaller cells, or increase points_per_cell.",
             listed(&paths),
             1e2 * most
         ));
@@ -143,8 +145,8 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
     let thin = |body: &Body| thinnest(body, grid).filter(|_| several(body));
     if let Some((axis, part)) = bodies.iter().filter_map(thin).min_by(|a, b| a.1.total_cmp(&b.1)) {
         report.warn(format!(
-            "W0212: {}: the body is {part:.2} cells thick along {}, less than the spacing of material points. Its bending and \
-             the strains next to it are unreliable. Use smaller cells there.",
+            "W0212: {}: the body is {part:.2} cells thick along {}, less than the spacing of material points. Its \
+             bending and the strains next to it are unreliable. Use smaller cells there.",
             listed(&paths(&|body| thin(body).is_some())),
             ["x", "y", "z"][axis]
         ));

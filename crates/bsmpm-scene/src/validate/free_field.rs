@@ -27,8 +27,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         if !matches!(case.boundary[1][0], Support::Fixed | Support::Absorbing) || case.boundary[1][1] != Support::Free {
             refuse(
-                "E0246: a free field needs a base and a free surface. Set boundary.bottom = \"fixed\" or \"absorbing\", and \
-                 boundary.top = \"free\"."
+                "E0246: a free field needs a base and a free surface. Set boundary.bottom = \"fixed\" or \
+                 \"absorbing\", and boundary.top = \"free\"."
                     .into(),
             );
         }
@@ -41,12 +41,14 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         let in_column = |body: &Body| body.bounds()[0][0] < higher && body.bounds()[1][0] > lower;
         let moves = |body: &Body| body.velocity.is_some_and(|v| v != [0.0; 3]) || body.spin.is_some();
         if case.bodies.iter().any(|body| in_column(body) && moves(body)) {
-            refuse("E0248: a body at the free field has an initial velocity or spin. Delete it: the field follows [shaking].".into());
+            refuse(
+                "E0248: a body at this free field has an initial velocity or spin. Delete the velocity or spin.".into(),
+            );
         }
         if let Some(what) = acts_between(case, (lower, higher)) {
             refuse(format!(
-                "E0248: {what} acts on the outermost cells, which represent the free field. Keep it more than a cell away from \
-                 this face at all times."
+                "E0248: {what} acts on the outermost cells, which represent the free field. Keep it more than a cell \
+                 away from this face at all times."
             ));
         }
     }

@@ -27,7 +27,8 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &
     let (cells, unknowns) = (estimate::cells(&spec), dims as u128 * estimate::nodes(&spec));
     if cells > MOST_UNKNOWNS || unknowns > MOST_UNKNOWNS {
         let message = format!(
-            "E0204: the grid has {cells} cells and {unknowns} unknowns (at most {MOST_UNKNOWNS} of each). Use larger cells."
+            "E0204: the grid has {cells} cells and {unknowns} unknowns (at most {MOST_UNKNOWNS} of each). Use larger \
+             cells."
         );
         report.error(grid.place("cell"), &grid.path_of("cell"), message);
         return None;
@@ -76,8 +77,8 @@ fn graded(
         let copies: Vec<&[f64]> = knots.numbers(name)?.chunk_by(|a, b| a == b).collect();
         let breakpoints: Vec<f64> = copies.iter().map(|copies| copies[0]).collect();
         if breakpoints.len() < 2 || breakpoints.windows(2).any(|pair| pair[1] <= pair[0]) {
-            let message = "E0208: breakpoints must not decrease, and at least two must differ. Sort them, and add those \
-                           that are missing.";
+            let message = "E0208: breakpoints must not decrease, and at least two must differ. Sort them, and add \
+                           those that are missing.";
             knots.error(name, message, report);
             return None;
         }
@@ -97,8 +98,8 @@ fn graded(
         for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
             if let Some(corner) = grid.vector(key).filter(|corner| corner[number] != end) {
                 let message = format!(
-                    "E0210: {name} = {} m differs from the outermost breakpoint along {name}, {end} m. Delete `{key}`, or \
-                     make both equal.",
+                    "E0210: {name} = {} m differs from the outermost breakpoint along {name}, {end} m. Delete `{key}`, \
+                     or make both equal.",
                     corner[number]
                 );
                 grid.error(key, message, report);
@@ -132,7 +133,8 @@ fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut
     let mut axis = |number: usize| {
         if upper[number] <= lower[number] {
             let message = format!(
-                "E0203: the upper end along {}, {} m, is not above the lower end, {} m. Exchange or correct the corners.",
+                "E0203: the upper end along {}, {} m, is not above the lower end, {} m. Exchange or correct the \
+                 corners.",
                 NAMES[number], upper[number], lower[number]
             );
             grid.error("upper", message, report);
@@ -186,8 +188,8 @@ impl Faces<'_> {
             }
             _ => {
                 let message = format!(
-                    "E0212: the grid has {exact} cells along {name}, not a whole number, and neither face there is free \
-                     to move. Use for example cell = {}.",
+                    "E0212: the grid has {exact} cells along {name}, not a whole number, and neither face there is \
+                     free to move. Use for example cell = {}.",
                     (upper - lower) / exact.round().max(1.0)
                 );
                 self.grid.error("cell", message, report);
@@ -204,8 +206,8 @@ fn warn_of_rounding(spec: &GridSpec, report: &mut Report<'_>) {
         let spacing = far * f64::EPSILON;
         if spacing > 1e-6 * axis.shortest() {
             report.warn(format!(
-                "W0208: grid: coordinates of {far:e} m along {name} are exact to {spacing:.1e} m only, more than 1e-6 of a \
-                 cell. Move the origin closer to the bodies."
+                "W0208: grid: coordinates of {far:e} m along {name} are exact to {spacing:.1e} m only, more than 1e-6 \
+                 of a cell. Move the origin closer to the bodies."
             ));
         }
     }

@@ -57,10 +57,14 @@ fn read(
         );
     }
     if regime == Some(Regime::QuasiStatic) && quantities.contains(&ProfileQuantity::Velocity) {
-        record.error("quantities", "E0218: the analysis has no inertia, so there is no velocity. Delete \"velocity\", or use analysis.type = \"dynamic\".", report);
+        let message = "E0218: the analysis has no inertia, so there is no velocity. Delete \"velocity\", or use \
+                       analysis.type = \"dynamic\".";
+        record.error("quantities", message, report);
     }
     if quantities.contains(&ProfileQuantity::ExcessPressure) && !super::flow::flows(root) {
-        record.error("quantities", "E0263: no water flows in this case, so there is no excess pressure. Delete it, or set `drainage` of a material.", report);
+        let message = "E0263: no water flows in this case, so there is no excess pressure. Delete it, or set \
+                       `drainage` of a material.";
+        record.error("quantities", message, report);
     }
     let mut times = if record.gives("times") { record.numbers("times")?.to_vec() } else { Vec::new() };
     if record.gives("times") && times.is_empty() {

@@ -191,8 +191,8 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
 /// Of a box without extent along some axis.
 fn empty_box(lower: &[f64], upper: &[f64]) -> String {
     format!(
-        "E0203: the corner {upper:?} is not above lower = {lower:?} along each axis, so the box is empty. Exchange or correct \
-         the corners."
+        "E0203: the corner {upper:?} is not above lower = {lower:?} along each axis, so the box is empty. Exchange or \
+         correct the corners."
     )
 }
 

@@ -53,8 +53,8 @@ fn countable(area: f64, spacing: f64) -> Result<(), String> {
     let squares = area / spacing.powi(2);
     let message = || {
         format!(
-            "E0216: the loaded surface covers {squares:.0} squares of the point spacing (at most {LARGEST}). Use larger \
-             cells, or fewer points_per_cell."
+            "E0216: the loaded surface covers {squares:.0} squares of the point spacing (at most {LARGEST}). Use \
+             larger cells, or fewer points_per_cell."
         )
     };
     if squares > LARGEST { Err(message()) } else { Ok(()) }
@@ -136,15 +136,16 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
         let [from, to] = sides[0].ends;
         if sides.len() > 2 {
             return Err(format!(
-                "E0227: {} triangles share the edge from {from:?} to {to:?} (at most 2). Repair the surface with a mesh tool.",
+                "E0227: {} triangles share the edge from {from:?} to {to:?} (at most 2). Repair the surface with a \
+                 mesh tool.",
                 sides.len()
             ));
         }
         if let [one, other] = &sides[..] {
             if one.upwards == other.upwards {
                 return Err(format!(
-                    "E0227: the normals of the triangles at the edge from {from:?} to {to:?} are inconsistent. Repair the surface with \
-                     a mesh tool."
+                    "E0227: the normals of the triangles at the edge from {from:?} to {to:?} are inconsistent. Repair \
+                     the surface with a mesh tool."
                 ));
             }
             let [one, other] = [one.triangle, other.triangle].map(|of| root(&mut piece, of));
@@ -154,8 +155,8 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
     match (0..all.len()).filter(|of| piece[*of] == *of).count() {
         1 => Ok(()),
         pieces => Err(format!(
-            "E0227: the surface consists of {pieces} pieces without a common edge. Weld its vertices with a mesh tool, or give \
-             each piece its own [[traction]]."
+            "E0227: the surface consists of {pieces} pieces without a common edge. Weld its vertices with a mesh tool, \
+             or give each piece its own [[traction]]."
         )),
     }
 }

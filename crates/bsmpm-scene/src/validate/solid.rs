@@ -27,15 +27,15 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     }
     for drain in root.records("drain").iter().chain(root.records("inflow")) {
         for key in ["from", "to", "circle", "surface"].into_iter().filter(|key| drain.gives(key)) {
-            let message = "E0225: this key belongs to a plane, and the case is 3-D. Use face, rectangle = { lower, upper } or \
-                           disc.";
+            let message = "E0225: this key belongs to a plane, and the case is 3-D. Use face, rectangle = { lower, \
+                           upper } or disc.";
             drain.error(key, message, report);
         }
     }
     for traction in root.records("traction") {
         for key in ["from", "to", "circle"].into_iter().filter(|key| traction.gives(key)) {
-            let message = "E0225: this key belongs to a plane, and the case is 3-D. Use rectangle = { lower, upper }, disc, \
-                           sphere or surface.";
+            let message = "E0225: this key belongs to a plane, and the case is 3-D. Use rectangle = { lower, upper }, \
+                           disc, sphere or surface.";
             traction.error(key, message, report);
         }
     }
@@ -99,16 +99,16 @@ fn faces(all: &[FaceSupport], boundary: &Record, report: &mut Report<'_>) {
     for of in all.iter().filter(|of| boundary.gives(side(of).word())) {
         if !matches!(of.support, Support::Fixed | Support::Roller | Support::Free | Support::Contact | Support::Outflow)
         {
-            let message = "E0226: this support is not available in 3-D. Use fixed, roller, free, outflow or contact, or \
-                           { friction_coefficient = ... }.";
+            let message = "E0226: this support is not available in 3-D. Use fixed, roller, free, outflow or contact, \
+                           or { friction_coefficient = ... }.";
             boundary.error(side(of).word(), message, report);
         }
     }
     let with_friction = || all.iter().filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0));
     let meets = |of: &&FaceSupport| with_friction().any(|other| other.face.axis != of.face.axis);
     if let Some(of) = with_friction().filter(|of| boundary.gives(side(of).word())).rfind(meets) {
-        let message = "E0226: friction on two faces that share an edge is not available in 3-D. Make one of them \"contact\" \
-                       or \"roller\".";
+        let message = "E0226: friction on two faces that share an edge is not available in 3-D. Make one of them \
+                       \"contact\" or \"roller\".";
         boundary.error(side(of).word(), message, report);
     }
 }
@@ -140,8 +140,8 @@ impl Case {
         let is_factored = self.geometry == Geometry::Solid && self.solver.linear_on(ranks).factor.is_some();
         let warning = || {
             format!(
-                "W0235: solver.linear: factorising {} unknowns in 3-D takes about {:.1} GB of memory. With poisson <= 0.4 \
-                 use \"incomplete-cholesky\", otherwise on one rank \"spline-multigrid\".",
+                "W0235: solver.linear: factorising {} unknowns in 3-D takes about {:.1} GB of memory. With poisson <= \
+                 0.4 use \"incomplete-cholesky\", otherwise on one rank \"spline-multigrid\".",
                 estimate.active,
                 estimate.bytes as f64 / 1e9
             )

@@ -25,12 +25,12 @@ pub const WET: &[Row] = &[
     row("upper = [2.0, 3.0, 1.5] }\nseepage", "upper = [2.5, 3.0, 1.5] }\nseepage", "drain.0.rectangle", "E0234"),
     row("disc     = { centre = [1.0", "disc = { centre = [3.5", "drain.1.disc", "no body is at"),
     row("upper = [1.0, 3.0, 1.5] }\nrate", "upper = [3.0, 3.0, 1.5] }\nrate", "inflow.0.rectangle", "no body is at"),
-    row("disc = { centre = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "a disc"),
+    row("disc = { centre = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "E0225"),
     row(
         "rectangle = { lower = [2.0, 0.0, 0.0], upper = [2.0, 3.0, 1.5] }",
         "surface = true",
         "drain.0.surface",
-        "a disc",
+        "E0225",
     ),
 ];
 

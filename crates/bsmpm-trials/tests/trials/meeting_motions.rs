@@ -206,8 +206,8 @@ fn rigid_bodies_that_meet_in_one_plane_are_warned_of_with_the_error_and_refused_
                   [[history]]\nquantity = \"rigid-force\"\nrigid = \"door\"\nname = \"door\"\n";
     let case = format!("{before}{bodies}[stabilisation]{method}");
     let scratch = Scratch::with_case(&case);
-    let warning = "warning W0232: rigid bodies `door` and `floor` meet in one plane and move differently. Their forces are about \
-                   8 % too large (12 cells across)";
+    let warning = "warning W0232: rigid bodies `door` and `floor` meet in one plane and move differently. Their forces \
+                   are about 8 % too large (12 cells across)";
     let refused = scratch.direct(&["case.toml", "--check", "--set", "grid.cell=0.25"]).expect(65);
     refused.says_once("error E0250: rigid.1.name: rigid bodies `door` and `floor`");
     scratch.direct(&["case.toml", "--check"]).expect(0).says_once(warning);

@@ -132,8 +132,8 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
 /// Warns that a round rim follows no grid line.
 fn doubt_rim(name: &str, found: &mut FoundLine) {
     let doubt = format!(
-        "W0224: {name} has a round edge inside cells. Up to a cell more than its radius is loaded, and its force is too \
-         large. Compare runs with two cell sizes."
+        "W0224: {name} has a round edge inside cells. Up to a cell more than its radius is loaded, and its force is \
+         too large. Compare runs with two cell sizes."
     );
     found.doubts.insert(name.to_owned(), doubt);
 }
@@ -304,15 +304,15 @@ fn end(
         _ if segment.path.is_none() => {}
         Some(_) => {
             let doubt = format!(
-                "W0226: the ends of `{name}` leave the grid lines, as it moves along its own length. Up to a cell more of soil is \
-                 loaded, and the force is too large. Use smaller cells."
+                "W0226: the ends of `{name}` leave the grid lines, as it moves along its own length. Up to a cell more \
+                 of soil is loaded, and the force is too large. Use smaller cells."
             );
             found.doubts.entry(name.clone()).or_insert(doubt);
         }
         None if outward.abs() < cell => {
             let message = format!(
-                "E0235: the segment is {} m long and ends inside a cell of {cell} m. It would restrain whole cells. Use smaller \
-                 cells, or put a grid line at {} = {} m.",
+                "E0235: the segment is {} m long and ends inside a cell of {cell} m. It would restrain whole cells. \
+                 Use smaller cells, or put a grid line at {} = {} m.",
                 outward.abs(),
                 NAMES[along],
                 at[along]

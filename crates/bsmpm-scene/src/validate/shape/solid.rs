@@ -46,8 +46,8 @@ pub(super) fn region(
         Ok(volume) => {
             if (volume.scale() - 1.0).abs() > SCALED {
                 report.warn(format!(
-                    "W0214: {}: the body is thin for these cells, so its volume in cut cells was scaled by {:.2}. Stresses \
-                     there are inaccurate. Use cells of at most five times its thickness.",
+                    "W0214: {}: the body is thin for these cells, so its volume in cut cells was scaled by {:.2}. \
+                     Stresses there are inaccurate. Use cells of at most five times its thickness.",
                     body.path_of(key),
                     volume.scale()
                 ));
@@ -66,8 +66,8 @@ fn reach(shape: &SolidShape) -> Option<String> {
     let SolidShape::Surface(surface) = shape else { return None };
     let [[x, y, z], [to_x, to_y, to_z]] = surface.bounds();
     Some(format!(
-        "E0202: the triangles reach from [{x:.3}, {y:.3}, {z:.3}] to [{to_x:.3}, {to_y:.3}, {to_z:.3}] m, out of the grid. \
-         Check the unit: scale = 0.001 reads millimetres."
+        "E0202: the triangles reach from [{x:.3}, {y:.3}, {z:.3}] to [{to_x:.3}, {to_y:.3}, {to_z:.3}] m, out of the \
+         grid. Check the unit: scale = 0.001 reads millimetres."
     ))
 }
 
@@ -129,8 +129,8 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
             Ok(surface) => {
                 if is_turned(rows) {
                     report.warn(format!(
-                        "W0215: {}: all triangles are inside out, and the volume that they enclose is filled. If they are a \
-                         hole, use `subtract`; otherwise reverse the normals.",
+                        "W0215: {}: all triangles are inside out, and the volume that they enclose is filled. If they \
+                         are a hole, use `subtract`; otherwise reverse the normals.",
                         shape.path_of("triangles")
                     ));
                 }
