@@ -177,7 +177,9 @@ impl Outline {
         let mut outline = Self { origin, edges, shapes, geometry, bounds, area, tally: CellTally::default() };
         let columns = outline.columns(grid).len();
         if columns > MOST_COLUMNS {
-            return Err(format!("it spans {columns} columns of cells; at most {MOST_COLUMNS} are possible"));
+            return Err(format!(
+                "E0216: the shape spans {columns} columns of cells (at most {MOST_COLUMNS}). Use larger cells."
+            ));
         }
         outline.count(grid, points_per_cell);
         Ok(outline)
@@ -247,7 +249,10 @@ fn reached(axis: &GridAxis, [lower, upper]: [f64; 2]) -> Range<usize> {
 
 fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result<(), String> {
     if edges.len() > MOST_EDGES {
-        return Err(format!("{} edges in all; at most {MOST_EDGES} are possible", edges.len()));
+        return Err(format!(
+            "E0216: the shape has {} edges with all its cuts (at most {MOST_EDGES}). Use fewer corners or cuts.",
+            edges.len()
+        ));
     }
     let cut = |edge: &Edge| {
         let [x, y] = [[edge.a[0], edge.b[0]], edge.heights()];
@@ -256,8 +261,8 @@ fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result
     let cells: u128 = edges.iter().map(cut).sum();
     if cells * edges.len() as u128 * points_per_cell as u128 > MOST_WORK {
         return Err(format!(
-            "{} edges cut about {cells} cells of {points_per_cell} x {points_per_cell} points, which would take too long; take \
-             fewer edges or larger cells",
+            "E0216: {} edges of the shape cut about {cells} cells, so that placing the material points takes too long. \
+             Use fewer edges, or larger cells.",
             edges.len()
         ));
     }

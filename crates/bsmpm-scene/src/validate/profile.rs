@@ -19,7 +19,11 @@ pub(super) fn read_all(
 ) -> Vec<Profile> {
     let records = root.records("profile");
     if records.len() > MOST {
-        root.error("profile", format!("{} profiles; at most {MOST} are possible", records.len()), report);
+        root.error(
+            "profile",
+            format!("E0214: the case has {} profiles (at most {MOST}). Delete some.", records.len()),
+            report,
+        );
         return Vec::new();
     }
     let mut profiles: Vec<Profile> = Vec::new();
@@ -27,7 +31,11 @@ pub(super) fn read_all(
         let Some(profile) = read((root, record), (regime, grid, end), report) else { continue };
         // Files of some systems are not told apart by the case of letters.
         if profiles.iter().any(|other| other.name.eq_ignore_ascii_case(&profile.name)) {
-            record.error("name", format!("there is a profile `{}` already", profile.name), report);
+            record.error(
+                "name",
+                format!("E0261: another profile has the name `{}`. Give each its own name.", profile.name),
+                report,
+            );
         }
         profiles.push(profile);
     }
@@ -42,20 +50,36 @@ fn read(
     let ends = history::ends(record, grid, report);
     let quantities: Vec<ProfileQuantity> = record.choices("quantities")?;
     if quantities.is_empty() {
-        record.error("quantities", "nothing is told: name at least one", report);
+        record.error(
+            "quantities",
+            "E0262: the profile has no quantity, so it would be empty. Name at least one.",
+            report,
+        );
     }
     if regime == Some(Regime::QuasiStatic) && quantities.contains(&ProfileQuantity::Velocity) {
-        record.error("quantities", "there is no velocity in a quasi-static analysis", report);
+        let message = "E0218: the analysis has no inertia, so there is no velocity. Delete \"velocity\", or use \
+                       analysis.type = \"dynamic\".";
+        record.error("quantities", message, report);
     }
     if quantities.contains(&ProfileQuantity::ExcessPressure) && !super::flow::flows(root) {
-        record.error("quantities", "no water flows: there is no \"excess-pressure\"", report);
+        let message = "E0263: no water flows in this case, so there is no excess pressure. Delete it, or set \
+                       `drainage` of a material.";
+        record.error("quantities", message, report);
     }
     let mut times = if record.gives("times") { record.numbers("times")?.to_vec() } else { Vec::new() };
     if record.gives("times") && times.is_empty() {
-        record.error("times", "it is never told: give a time, or leave the key out for all frames", report);
+        record.error(
+            "times",
+            "E0262: the list of times is empty, so the profile is never written. Add times, or delete the key.",
+            report,
+        );
     }
     if let Some(late) = times.iter().find(|time| end.is_some_and(|end| **time > end)) {
-        record.error("times", format!("{late} is beyond the end of the run"), report);
+        record.error(
+            "times",
+            format!("E0264: the time {late} is beyond the end of the analysis. Reduce it, or increase analysis.end."),
+            report,
+        );
         return None;
     }
     times.sort_by(f64::total_cmp);

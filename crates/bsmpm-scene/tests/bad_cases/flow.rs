@@ -11,11 +11,11 @@ const CURVE: &str = "curve = [[0, 1, 1], [1, 0.5, 0.1], [2, 0.4, 0.2]]";
 pub const FLOW: &[Row] = &[
     // Time.
     row(TYPE, "type = \"consolidate\"", "analysis.type", "did you mean `consolidation`?"),
-    row(TYPE, "type = \"dynamic\"", "analysis.growth", "steps grow in a consolidation analysis only").down(3),
-    row("end    = \"20 year\"\n", "", "analysis.end", "missing; a consolidation analysis needs its end").up(2),
-    row("dt     = \"1 h\"", "steps = 100", "analysis.growth", "give dt, the first one").down(1),
+    row(TYPE, "type = \"dynamic\"", "analysis.growth", "E0258").down(3),
+    row("end    = \"20 year\"\n", "", "analysis.end", "E0255").up(2),
+    row("dt     = \"1 h\"", "steps = 100", "analysis.growth", "E0259").down(1),
     row("growth = 1.2", "growth = 0.9", "analysis.growth", "1 <= growth <= 10"),
-    row("dt_max = \"60 d\"", "dt_max = \"1 min\"", "analysis.dt_max", "allowed: dt_max >= dt = 3600"),
+    row("dt_max = \"60 d\"", "dt_max = \"1 min\"", "analysis.dt_max", "dt_max = 60 is less than dt = 3600"),
     row("dt_max = \"60 d\"", "dt_max = \"60 daz\"", "analysis.dt_max", "did you mean `day`?"),
     // Splines, points, averages, iterations.
     row("degree = \"quadratic\"", "degree = \"linear\"", "grid.degree", "no gradient: take \"quadratic\""),
@@ -127,7 +127,7 @@ pub const FLOW: &[Row] = &[
         "it would hold from the first step on",
     )
     .down(3),
-    row("dt     = \"1 h\"", "dt     = 0.1", "analysis.dt", "6.312e9 steps of dt to the end; at most 1e9"),
+    row("dt     = \"1 h\"", "dt     = 0.1", "analysis.dt", "6.312e9 steps until the end (at most 1e9)"),
     row(
         "[solver]",
         "[[stage]]\nat = \"1 day\"\nboundary = { left = \"fixed\" }\n[solver]",

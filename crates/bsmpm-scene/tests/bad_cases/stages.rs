@@ -221,7 +221,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "[[body]]\nname = \"fill\"\nmaterial = \"soil\"\npoints_per_cell = 3\nbox = { lower = [0, 1], upper = [2, 1.5] }\n\
          [[stage]]\nat = 0.5\nadd = [\"fill\"]\n[[traction]]\nfrom = [0, 1]\nto = [2, 1]\npressure = 1e3\n[output]",
         "traction.0.pressure",
-        "at t = 0.5, when it acts, bodies lie on both sides of it",
+        "E0252: traction.0.pressure: at t = 0.5 bodies",
     )
     .down(11),
     row(

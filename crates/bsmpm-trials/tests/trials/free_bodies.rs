@@ -170,7 +170,7 @@ displacement = [0.0, 0.0]
 fn paths_that_make_rigid_bodies_overlap_are_refused() {
     let scratch = Scratch::with_case(PISTONS);
     let output = scratch.direct(&["case.toml", "--check"]).expect(65);
-    output.says_once("rigid bodies `left` and `right` overlap at t = 0.8");
+    output.says_once("the paths of rigid bodies `left` and `right` make them overlap at t = 0.8");
     scratch.write("case.toml", changed(PISTONS, "0.6, 0.0", "0.45, 0.0"));
     scratch.direct(&["case.toml", "--check"]).expect(0);
     // Drawn so and moved as one they are parts of one shape.
