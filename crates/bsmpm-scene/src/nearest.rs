@@ -24,8 +24,8 @@ pub(crate) fn hint<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> 
 pub(crate) fn unknown_name<'a>(kind: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let written = shortened(name);
     match nearest(name, known) {
-        Some(near) => format!("E0612: There is no {kind} with the name `{written}`; did you mean `{near}`?"),
-        None => format!("E0612: There is no {kind} with the name `{written}`. Correct the name."),
+        Some(near) => format!("E0612: there is no {kind} with the name `{written}`; did you mean `{near}`?"),
+        None => format!("E0612: there is no {kind} with the name `{written}`. Correct the name."),
     }
 }
 

@@ -43,7 +43,7 @@ fn read(
     let material = material(record, materials, report);
     let stages = record.records("stage");
     if record.gives("stage") && stages.is_empty() {
-        record.error("stage", "E0690: The test has no stage. Add at least one [[element.NAME.stage]].", report);
+        record.error("stage", "E0690: the test has no stage. Add at least one [[element.NAME.stage]].", report);
     }
     let mut undrained = false;
     let mut read = Vec::with_capacity(stages.len());
@@ -51,8 +51,8 @@ fn read(
         read.push(self::stage(stage, report));
         let now = stage.flag("undrained").unwrap_or(false);
         if undrained && !now {
-            let message = "E0691: A drained stage cannot follow an undrained one, because the dissipation of the pore pressure is not \
-                           modelled. Use two tests.";
+            let message = "E0691: a drained stage cannot follow an undrained one, because the dissipation of the pore \
+                           pressure is not modelled. Use two tests.";
             report.error(stage.origin, &stage.path, message);
         }
         undrained = now;
@@ -61,7 +61,7 @@ fn read(
     let graded = materials[material].material.is_graded();
     if graded && !record.gives("height") {
         let message = format!(
-            "E0692: The parameters of material.{} vary with height, and the test needs one height. Add `height`.",
+            "E0692: the parameters of material.{} vary with height, and the test needs one height. Add `height`.",
             materials[material].name
         );
         report.error(record.origin, &record.path_of("height"), message);
@@ -69,7 +69,7 @@ fn read(
     }
     if !graded && record.gives("height") {
         let message = format!(
-            "E0692: The parameters of material.{} do not vary with height. Remove `height`.",
+            "E0692: the parameters of material.{} do not vary with height. Remove `height`.",
             materials[material].name
         );
         record.error("height", message, report);
@@ -85,7 +85,7 @@ fn material(record: &Record, materials: &[NamedMaterial], report: &mut Report<'_
     if !record.gives("material") {
         if materials.len() > 1 {
             let message = format!(
-                "E0693: The case has {} materials, and the test does not say which one it uses. Add `material`.",
+                "E0693: the case has {} materials, and the test does not say which one it uses. Add `material`.",
                 materials.len()
             );
             report.error(record.origin, &record.path_of("material"), message);
@@ -110,11 +110,12 @@ fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
         Path::Mixed => &DRIVES[2..],
     };
     for key in DRIVES.iter().filter(|key| !known.contains(key) && record.gives(key)) {
-        let message = format!("E0694: The test \"{path}\" has no such key. Remove `{key}`.");
+        let message = format!("E0694: the test \"{path}\" has no such key. Remove `{key}`.");
         record.error(key, message, report);
     }
     let missing = |keys: &[&str], report: &mut Report<'_>| {
-        let message = format!("E0694: The test \"{path}\" does not say what is applied. Add {}.", keys.join(" or "));
+        let message =
+            format!("E0694: the test \"{path}\" does not say what is applied. Add `{}`.", keys.join("` or `"));
         report.error(record.origin, &record.path, message);
     };
     let given = |keys: &[&'static str]| keys.iter().copied().find(|key| record.gives(key));
@@ -157,8 +158,8 @@ fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
     let is_held = |target: &Option<Target>| matches!(target, Some(Target::Strain(_)));
     if undrained && (path == Path::Isotropic || targets[..3].iter().all(is_held) || path == Path::Oedometer) {
         let message = format!(
-            "E0695: The test \"{path}\" changes the volume, which is not possible without drainage. Remove `undrained`, or use \
-             another test."
+            "E0695: the test \"{path}\" prescribes the volume change, so it cannot be undrained. Remove `undrained`, \
+             or use another test."
         );
         record.error("undrained", message, report);
         return None;

@@ -37,7 +37,7 @@ pub(super) fn read_all(
         let Some(history) = read((root, record), (regime, grid, made), report) else { continue };
         if let Some(column) = history.columns().into_iter().find(|column| !taken.insert(column.name.clone())) {
             let message =
-                format!("E0610: Another history has the column `{}`. Give this one a different `name`.", column.name);
+                format!("E0610: another history has the column `{}`. Give this one a different `name`.", column.name);
             record.error("name", message, report);
         }
         histories.push(history);
@@ -55,15 +55,15 @@ fn read(
     let (own, needed) = own_keys(measured, root.word("geometry"));
     let belongs = |key: &&str| own.contains(key) || needed.contains(key) || (*key == "of" && of_strip);
     for key in KEYS.into_iter().filter(|key| !belongs(key) && record.gives(key)) {
-        let message = format!("E0642: The quantity \"{measured}\" has no such key. Remove `{key}`.");
+        let message = format!("E0642: the quantity \"{measured}\" has no such key. Remove `{key}`.");
         record.error(key, message, report);
     }
     if of_strip && record.gives("face") {
-        let message = "E0643: Both `face` and `of` are given, and they name different surfaces. Remove one of them.";
+        let message = "E0643: both `face` and `of` are given, and they name different surfaces. Remove one of them.";
         record.error("of", message, report);
     }
     for key in needed.iter().filter(|key| !record.gives(key) && !of_strip) {
-        let message = format!("E0644: The quantity \"{measured}\" needs this key. Add `{key}`.");
+        let message = format!("E0644: the quantity \"{measured}\" needs this key. Add `{key}`.");
         report.error(record.origin, &record.path_of(key), message);
     }
     if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
@@ -71,21 +71,21 @@ fn read(
     }
     if measured.is_of_footing() && !root.gives("footing") {
         let message =
-            format!("E0646: The quantity \"{measured}\" needs a [footing], and the case has none. Add [footing].");
+            format!("E0646: the quantity \"{measured}\" needs a [footing], and the case has none. Add [footing].");
         record.error("quantity", message, report);
     }
     if measured.is_of_flow() && !flow::flows(root) {
         record.error("quantity", needs_flow(measured.word()), report);
     }
     if record.number("scale") == Some(0.0) {
-        record.error("scale", "E0647: A scale of 0 makes the whole column 0. Use another scale.", report);
+        record.error("scale", "E0647: a scale of 0 makes the whole column 0. Use another scale.", report);
     }
     if let Some(side) = record.word::<Side>("face").filter(|_| measured.is_of_contact())
         && !supports(root, side).contains(&Support::Contact)
     {
         let message = format!(
-            "E0646: The quantity \"{measured}\" needs a boundary in contact, and `{side}` is not. Set boundary.{side} = \
-             \"contact\"."
+            "E0646: the quantity \"{measured}\" needs a boundary in contact, and `{side}` is not. Set boundary.{side} \
+             = \"contact\"."
         );
         record.error("face", message, report);
     }
@@ -93,15 +93,15 @@ fn read(
         && is_never_held(root, side)
     {
         let message = format!(
-            "E0646: Nothing supports the boundary `{side}`, so its reaction is always 0. Name another `face`, or set \
+            "E0646: nothing supports the boundary `{side}`, so its reaction is always 0. Name another `face`, or set \
              boundary.{side}."
         );
         record.error("face", message, report);
     }
     let is_outlet = |side: Side| supports(root, side).contains(&Support::Outflow);
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
-        let message = "E0646: No material can leave the grid, because no boundary is an outflow. Set a side in [boundary] to \
-                       \"outflow\".";
+        let message = "E0646: no material can leave the grid, because no boundary is an outflow. Set a side in \
+                       [boundary] to \"outflow\".";
         record.error("quantity", message, report);
     }
     let quantity = match of_strip {
@@ -130,7 +130,8 @@ fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut
     let (strip, _, key) = strips[number];
     if measured.is_of_contact() && strip.record(key).is_none() {
         let message = format!(
-            "E0646: The quantity \"{measured}\" needs frictional contact, and {} is tied to the ground. Add `{key}` to it.",
+            "E0646: the quantity \"{measured}\" needs frictional contact, and {} is tied to the ground. Add `{key}` \
+             to it.",
             strip.path
         );
         record.error("of", message, report);
@@ -155,26 +156,29 @@ fn is_never_held(root: &Record, side: Side) -> bool {
 
 /// The error of a time after the end of the run.
 pub(super) fn after_the_end(time: f64) -> String {
-    format!("E0663: The time {time} s is after the end of the run. Use a time up to `analysis.end`, or increase that.")
+    format!(
+        "E0663: the time t = {time} is after the end of the run. Use a time up to `analysis.end`, or increase that."
+    )
 }
 
 /// The error of too many tables.
 pub(super) fn too_many(number: usize, most: usize) -> String {
-    format!("E0640: The case has {number} of these tables, and at most {most} are possible. Remove some.")
+    format!("E0640: the case has {number} of these tables, and at most {most} are possible. Remove some.")
 }
 
 /// The error of a quantity that a quasi-static analysis does not have.
 pub(super) fn needs_dynamics(quantity: &str) -> String {
     format!(
-        "E0645: A quasi-static analysis has no velocities, and so no \"{quantity}\". Use another quantity, or analysis.type = \
-         \"dynamic\"."
+        "E0645: a quasi-static analysis has no velocities, and so no \"{quantity}\". Use another quantity, or \
+         analysis.type = \"dynamic\"."
     )
 }
 
 /// The error of a quantity of flowing water.
 pub(super) fn needs_flow(quantity: &str) -> String {
     format!(
-        "E0646: The quantity \"{quantity}\" needs flow of water. Set drainage = \"coupled\" or \"undrained\" in a material."
+        "E0646: the quantity \"{quantity}\" needs flow of water. Set drainage = \"coupled\" or \"undrained\" in a \
+         material."
     )
 }
 
@@ -326,7 +330,7 @@ fn material(record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> O
         return None;
     };
     if bodies.iter().all(|body| body.material != number) {
-        let message = format!("E0613: No body consists of the material `{name}`. Name another material.");
+        let message = format!("E0613: no body consists of the material `{name}`. Name another material.");
         record.error("material", message, report);
         return None;
     }
@@ -355,7 +359,7 @@ fn weighing(of: Counted, record: &Record, made: CaseBodies<'_>, report: &mut Rep
     let mut counted = bodies.iter().enumerate().filter(|(number, body)| counts(*number, body));
     if !counted.any(|(_, body)| materials[body.material].density.is_some()) {
         let message =
-            "E0646: The quantity needs mass, and this part of the ground has none. Add `unit_weight` to its material.";
+            "E0646: the quantity needs mass, and this part of the ground has none. Add `unit_weight` to its material.";
         record.error("quantity", message, report);
         return None;
     }
@@ -372,7 +376,7 @@ fn section(
         return Some((vec![ends(record, grid, report)?], false));
     }
     if !record.gives("rectangle") && !record.gives("disc") {
-        let message = "E0644: A section in 3-D needs a plane area. Add `rectangle` or `disc`.";
+        let message = "E0644: a section in 3-D needs a plane area. Add `rectangle` or `disc`.";
         report.error(record.origin, &record.path, message);
         return None;
     }
@@ -386,7 +390,7 @@ pub(super) fn ends(record: &Record, grid: Option<&GridSpec>, report: &mut Report
     let ends = [from?, to?];
     if ends[0] == ends[1] {
         let message = format!(
-            "E0651: The line begins and ends at {:?}, so its length is 0. Correct `from` or `to`.",
+            "E0651: the line begins and ends at {:?}, so its length is 0. Correct `from` or `to`.",
             record.numbers("to")?
         );
         record.error("to", message, report);
@@ -405,7 +409,7 @@ fn face(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Face>
     let (side, geometry) = (record.word::<Side>("face")?, root.word::<Geometry>("geometry")?);
     let face = Face::of(side, geometry);
     if face.is_none() {
-        let message = format!("E0653: A grid in {geometry} has no face \"{side}\". Name another face.");
+        let message = format!("E0653: a {geometry} grid has no face \"{side}\". Name another face.");
         record.error("face", message, report);
     }
     face
@@ -421,10 +425,8 @@ fn at_x(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Op
         return Some(None);
     }
     let x = record.number("at_x")?;
-    if let Some((lower, upper)) = grid.map(|grid| (grid.lower()[0], grid.upper()[0])).filter(|(a, b)| x < *a || x > *b)
-    {
-        let message = format!("E0650: x = {x} m is outside the grid ({lower} to {upper} m). Choose an x inside it.");
-        record.error("at_x", message, report);
+    if let Some(beyond) = grid.and_then(|grid| place::beyond(grid, [x])) {
+        record.error("at_x", beyond, report);
     }
     Some(Some(x))
 }
@@ -437,15 +439,15 @@ fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> 
         let (low, high) = (&lower[..axes], &upper[..axes]);
         if (0..axes).any(|axis| lower[axis] >= upper[axis]) {
             let message = format!(
-                "E0651: The box is empty, because its upper corner {high:?} is not above its lower corner {low:?}. Correct `upper` \
-                 or `lower`."
+                "E0651: the box is empty, because its upper corner {high:?} is not above its lower corner {low:?}. \
+                 Correct `upper` or `lower`."
             );
             record.error("upper", message, report);
         }
         let (start, end) = (grid.lower(), grid.upper());
         if (0..axes).any(|axis| upper[axis] <= start[axis] || lower[axis] >= end[axis]) {
             let message = format!(
-                "E0650: The box is outside the grid, which spans {:?} to {:?}. Move it into the grid.",
+                "E0650: the box is outside the grid, which spans {:?} to {:?}. Move it into the grid.",
                 &start[..axes],
                 &end[..axes]
             );
@@ -457,15 +459,8 @@ fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> 
 
 fn at(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[f64; 3]> {
     let at = record.vector("at")?;
-    if let Some(grid) = grid {
-        let (axes, lower, upper) = (grid.dims(), grid.lower(), grid.upper());
-        if (0..axes).any(|axis| at[axis] < lower[axis] || at[axis] > upper[axis]) {
-            let (at, lower, upper) = (&at[..axes], &lower[..axes], &upper[..axes]);
-            let message = format!(
-                "E0650: The place {at:?} is outside the grid, which spans {lower:?} to {upper:?}. Move it into the grid."
-            );
-            record.error("at", message, report);
-        }
+    if let Some(beyond) = grid.and_then(|grid| place::is_beyond(grid, at)) {
+        record.error("at", beyond, report);
     }
     Some(at)
 }
@@ -484,7 +479,8 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
         let hint = hint(quantity, names.iter().map(String::as_str));
         let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
         let message = format!(
-            "E0660: No [[history]] has a column `{}`{hint} (columns: {known}). Correct the name, or add a [[history]].",
+            "E0660: no [[history]] has a column `{}`{hint} (columns: {known}). Correct the name, or add a \
+             [[history]].",
             shortened(quantity)
         );
         record.error("quantity", message, report);
@@ -497,12 +493,12 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
     let (min, max) = (bound("min", record, &column, report)?, bound("max", record, &column, report)?);
     match (min, max) {
         (None, None) => {
-            let message = "E0661: The check has no bound, so it checks nothing. Add `min`, `max` or both.";
+            let message = "E0661: the check has no bound, so it checks nothing. Add `min`, `max` or both.";
             report.error(record.origin, &record.path, message);
         }
         (Some(min), Some(max)) if min > max => {
             let message =
-                format!("E0661: The lower bound {min} exceeds the upper bound {max}. Exchange `min` and `max`.");
+                format!("E0661: the lower bound {min} exceeds the upper bound {max}. Exchange `min` and `max`.");
             record.error("min", message, report);
         }
         _ => {}
@@ -523,7 +519,7 @@ fn bound(key: &str, record: &Record, column: &Column, report: &mut Report<'_>) -
     }
     let allowed = expected.map_or("a number".to_owned(), |expected| expected.to_string());
     let message = format!(
-        "E0665: The value is {dimension}, but the column `{}` needs {allowed}. Correct the unit of the bound.",
+        "E0665: the value is {dimension}, but the column `{}` needs {allowed}. Correct the unit of the bound.",
         column.name
     );
     record.error(key, message, report);

@@ -57,12 +57,13 @@ impl Reduction {
 pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report<'_>) -> Option<Vec<NamedMaterial>> {
     let named = root.named("material");
     if root.gives("material") && named.is_empty() {
-        let message = "E0301: The case has no material. Add a table [material.NAME] for each soil.";
+        let message = "E0301: the case has no material. Add a table [material.NAME] for each soil.";
         root.error("material", message, report);
     }
     if named.len() > MOST {
         let message = format!(
-            "E0302: The case has {} materials, and at most {MOST} are possible. Merge materials with equal parameters.",
+            "E0302: the case has {} materials, and at most {MOST} are possible. Merge materials with equal \
+             parameters.",
             named.len()
         );
         root.error("material", message, report);
@@ -112,8 +113,8 @@ fn read(
     let Reduction { factor, elastic, stiffness, is_for_limit_load } = around.reduction;
     let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
     if factor != 1.0 && !elastic && of_yield {
-        let message = "E0312: With strength_reduction.factor the yield surface that follows from `ocr` would grow while the \
-                       strength is reduced. Give `preconsolidation` instead of `ocr`.";
+        let message = "E0312: with strength_reduction.factor the yield surface that follows from `ocr` would grow \
+                       while the strength is reduced. Give `preconsolidation` instead of `ocr`.";
         record.error("ocr", message, report);
     }
     let (young, poisson, law) = (young?, poisson?, law?);
@@ -151,7 +152,7 @@ impl Layer {
         Some(Self { heights: lower..upper, base: grid.lower()[up] })
     }
 
-    /// An error where a parameter that varies with height leaves its range; a constant has been compared with it before.
+    /// Reports a parameter that varies with height and leaves its range; a constant has been compared with it before.
     fn check(&self, record: &Record, (key, range): (&str, &Range), profile: &Profile, report: &mut Report<'_>) {
         if profile.per_metre == 0.0 && range.contains(profile.value) {
             return;
@@ -160,8 +161,8 @@ impl Layer {
             let value = profile.at(y);
             if !range.contains(value) {
                 let message = format!(
-                    "E0303: The value is {value} at y = {y} m, where bodies of this material lie; allowed: {}. Correct `value` \
-                     or `per_metre`.",
+                    "E0303: the value is {value} at y = {y} m, where bodies of this material lie; allowed: {}. \
+                     Correct `value` or `per_metre`.",
                     range.condition(key)
                 );
                 record.error(key, message, report);
@@ -210,7 +211,7 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
         }
         (_, true) => record.number("density")?,
         _ if regime == Some(Regime::Dynamic) => {
-            let message = "E0310: A dynamic analysis needs the mass of the material. Add `unit_weight` or `density`.";
+            let message = "E0310: a dynamic analysis needs the mass of the material. Add `unit_weight` or `density`.";
             report.error(record.origin, &record.path, message);
             return None;
         }
@@ -218,8 +219,7 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
     };
     if !(100.0..=30_000.0).contains(&density) {
         report.warn(format!(
-            "W0301: {}: The density is {density:.6} kg/m3 (unit weight {:.6} kN/m3); usual are 100 to 30000 kg/m3. Check \
-             the unit of `density` or `unit_weight`.",
+            "{}: a density of {density:.6} kg/m3 (unit weight {:.6} kN/m3) is unusual: check the unit",
             record.path,
             density * STANDARD_GRAVITY * 1e-3
         ));
@@ -237,14 +237,14 @@ fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> 
     match density {
         None => {
             let message =
-                "E0310: The material has no unit weight above the water table. Add `unit_weight` or `density`.";
+                "E0310: the material has no unit weight above the water table. Add `unit_weight` or `density`.";
             record.error(KEY, message, report);
         }
         Some(dry) if saturated < dry => {
             let [wet, dry] = [saturated, dry].map(|density| density * STANDARD_GRAVITY * 1e-3);
             let message = format!(
-                "E0309: The saturated unit weight ({wet:.6} kN/m3) is below the unit weight above the water table ({dry:.6} \
-                 kN/m3). Correct one of them."
+                "E0309: the saturated unit weight ({wet:.6} kN/m3) is below the unit weight above the water table \
+                 ({dry:.6} kN/m3). Correct one of them."
             );
             record.error(KEY, message, report);
         }
@@ -258,8 +258,8 @@ fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> 
 fn retardation(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
     let Some(damping) = record.record("damping") else { return Some(0.0) };
     if regime == Some(Regime::QuasiStatic) {
-        let message = "E0311: A quasi-static analysis has no velocities, so damping cannot act. Remove `damping`, or use \
-                       analysis.type = \"dynamic\".";
+        let message = "E0311: a quasi-static analysis has no velocities, so damping cannot act. Remove `damping`, or \
+                       use analysis.type = \"dynamic\".";
         record.error("damping", message, report);
     }
     let (ratio, frequency) = (damping.number("ratio")?, damping.number("frequency")?);
@@ -276,7 +276,8 @@ const STIFF_TO_FLOW: f64 = 0.499;
 fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {
     if let Some(young) = young.filter(|young| !(1e3..=1e12).contains(young)) {
         report.warn(format!(
-            "W0302: {}: Young's modulus is {young:e} Pa ({:e} kPa); usual are 1 kPa to 1000 GPa. Check the unit of `young`.",
+            "W0302: {}: Young's modulus is {young:e} Pa ({:e} kPa); usual are 1 kPa to 1000 GPa. Check the unit of \
+             `young`.",
             record.path,
             young * 1e-3
         ));
@@ -290,12 +291,13 @@ fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, 
     let path = &record.path;
     report.warn(match instead {
         Some((young, bulk)) => format!(
-            "W0303: {path}: poisson = {poisson} is nearly incompressible, and the pressure oscillates. Use drainage = \
-             \"undrained\", young = {young:.5e}, poisson = {DRAINED}, porosity = {POROSITY} and water.bulk = {bulk:.5e}."
+            "W0303: {path}: poisson = {poisson} makes the pressure oscillate. Use a consolidation analysis with \
+             drainage = \"undrained\", young = {young:.5e}, poisson = {DRAINED}, porosity = {POROSITY}, water.bulk = \
+             {bulk:.5e}."
         ),
         None => format!(
-            "W0303: {path}: poisson = {poisson} is nearly incompressible: the pressure oscillates, and the solver needs many \
-             iterations. Use poisson = 0.49 or less."
+            "W0303: {path}: poisson = {poisson} makes the pressure oscillate, and the solver needs many iterations. \
+             Use poisson = 0.49 or less."
         ),
     });
 }

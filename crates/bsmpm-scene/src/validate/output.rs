@@ -18,13 +18,13 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
     if let (Some(Every::Time(every)), Some(end)) = (every, end) {
         if every > end {
             report.warn(format!(
-                "W0661: output.every: The interval of {every} s exceeds the run of {end} s, so only the first and last frames are \
-                 written. Reduce it."
+                "W0661: output.every: the interval of {every} is longer than the run of {end}, so only the first and \
+                 last frames are written. Reduce it."
             ));
         }
         if end / every > super::MOST_STEPS {
             let message = format!(
-                "E0662: This interval gives {:.3e} frames, and at most {:e} are possible. Increase it.",
+                "E0662: this interval gives {:.3e} frames, and at most {:e} are possible. Increase `every`.",
                 end / every,
                 super::MOST_STEPS
             );

@@ -43,7 +43,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 /// Times that lie so near to the start that no step ends there.
 fn too_soon(case: &Case, record: &Record, report: &mut Report<'_>) {
     let least = 1e-6 * case.analysis.dt;
-    let message = |time: f64| format!("E0664: The time {time} is not after the start. Use a time above {least:e}.");
+    let message =
+        |time: f64| format!("E0664: the time {time} is not after the start, t = 0. Use a time above {least:e}.");
     if let (Some(time), Some(output)) = (case.output.times.first(), record.record("output"))
         && *time <= least
     {
@@ -65,13 +66,13 @@ fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
             continue;
         }
         if !matches!(case.initial, Some(Initial::AtRest(_))) {
-            let message = "E0318: The stiffness of this model follows the stress, so it needs initial stresses. Add [initial] with \
-                           `k0`.";
+            let message = "E0318: the stiffness of this model follows the stress, so it needs initial stresses. Add \
+                           [initial] with `k0`.";
             written.error("model", message, report);
         } else if named.density.is_none() {
             let message = format!(
-                "E0310: Without weight material.{name} has no initial stress, from which its stiffness follows. Add `unit_weight` \
-                 or `density`."
+                "E0310: without weight material.{name} has no initial stress, from which its stiffness follows. Add \
+                 `unit_weight` or `density`."
             );
             report.error(written.origin, &written.path, message);
         }
@@ -91,16 +92,16 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
         if !is_timed && named.material.over(1.0).is_some() {
             let message = match (kind, is_of_clay) {
                 (AnalysisType::Consolidation, true) => {
-                    "E0319: A rate-dependent strength is not available in a consolidation analysis. Remove `rate_parameter` and \
-                     `reference_rate`."
+                    "E0319: a rate-dependent strength is not available in a consolidation analysis. Remove \
+                     `rate_parameter` and `reference_rate`."
                 }
                 (_, true) => {
-                    "E0319: A rate-dependent strength needs real time. Use analysis.type = \"quasi-static-rate\" or \"dynamic\", \
-                     or remove `rate_parameter` and `reference_rate`."
+                    "E0319: a rate-dependent strength needs real time. Use analysis.type = \"quasi-static-rate\" or \
+                     \"dynamic\", or remove `rate_parameter` and `reference_rate`."
                 }
                 (_, false) => {
-                    "E0319: The strength of this model depends on the rate, which is available in dynamics only. Use analysis.type \
-                     = \"dynamic\"."
+                    "E0319: the strength of this model depends on the rate, which is available in dynamics only. Use \
+                     analysis.type = \"dynamic\"."
                 }
             };
             let key = if is_of_clay { "rate_parameter" } else { "model" };
@@ -109,8 +110,8 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let slowest = written.number("reference_rate").filter(|_| is_of_clay).map(|rate| rate * case.analysis.dt);
         if let Some(strain) = slowest.filter(|strain| *strain < DIGITS) {
             report.warn(format!(
-                "W0312: {}: The strain of one step at this rate is {strain:.1e} (limit {DIGITS:e}), too small for an accurate \
-                 strength. Increase it, with the cohesion at that rate.",
+                "W0312: {}: the strain of one step at this rate is {strain:.1e} (limit {DIGITS:e}), too small for an \
+                 accurate strength. Increase `reference_rate`, and give the cohesion at that rate.",
                 written.path_of("reference_rate")
             ));
         }
@@ -122,8 +123,8 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
     for (component, name) in ["x", "y", "z"].into_iter().enumerate().take(case.grid.dims()) {
         if !holds(case, component) {
             let message = format!(
-                "E0670: No body is supported along {name}, so a quasi-static analysis has no solution. Set a side that a body \
-                 reaches to \"fixed\" or \"roller\"."
+                "nothing holds the bodies along {name}: no fixed face, roller or face in contact that a body reaches prescribes \
+                 it, nor does a strip or a rigid body that a body is at, and a quasi-static analysis is singular then"
             );
             report.error(record.place("boundary"), "boundary", message);
         }
@@ -141,27 +142,27 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let mut refuse = |message: &str| boundary.error(side, message, report);
         if case.analysis.regime == Regime::QuasiStatic {
             refuse(
-                "E0671: An absorbing boundary supports nothing in a quasi-static analysis, which has no waves. Use \"fixed\" or \
-                 \"roller\".",
+                "E0671: an absorbing boundary supports nothing in a quasi-static analysis, which has no waves. Use \
+                 \"fixed\" or \"roller\".",
             );
         }
         if case.gravity.is_some() && case.initial.is_none() {
             refuse(
-                "E0672: An absorbing boundary carries initial stresses only, so the ground would sink through it under gravity. Add \
-                 [initial].",
+                "E0672: an absorbing boundary carries initial stresses only, so the ground would sink through it \
+                 under gravity. Add [initial].",
             );
         }
         if case.boundary[1 - axis].contains(&Support::Contact) {
             refuse(
-                "E0673: This absorbing boundary shares a corner with a boundary in contact, and the corner would be constrained twice. \
-                 Make the other one \"fixed\" or \"absorbing\".",
+                "E0673: this absorbing boundary shares a corner with a boundary in contact, and the corner would be \
+                 constrained twice. Make the other one \"fixed\" or \"absorbing\".",
             );
         }
         let absorbs = case.boundary[axis][upper] == Support::Absorbing;
         if absorbs && axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
             refuse(
-                "E0674: In an earthquake an absorbing side would hold back the ground, which moves with the free field. Use \
-                 \"free-field\".",
+                "E0674: in an earthquake the ground moves with the free field, and an absorbing side would hold it \
+                 back. Use \"free-field\".",
             );
         }
     }
@@ -172,8 +173,8 @@ fn shaken(case: &Case, report: &mut Report<'_>) {
     for (component, name) in ["x", "y", "z"].into_iter().enumerate() {
         if case.shaking.iter().any(|(_, ground)| ground[component] != 0.0) && !holds(case, component) {
             report.warn(format!(
-                "W0670: shaking: The base moves along {name}, but no body is supported along {name}, so none follows it. Fix a \
-                 side along {name}, usually the bottom."
+                "W0670: shaking: the base moves along {name}, but no body is supported along {name}, so none follows \
+                 it. Fix a side along {name}, usually the bottom."
             ));
         }
     }
@@ -208,8 +209,8 @@ fn thrown_back(case: &Case, report: &mut Report<'_>) {
         return;
     }
     report.warn(format!(
-        "W0671: analysis.dt: Steps of {:.3e} s are longer than {MOST_CROSSINGS} crossings of a wave ({time:.3e} s in {name}), so \
-         impacts gain energy. Use dt = {:.1e} s or less.",
+        "W0671: analysis.dt: a step of {:.3e} s is longer than {MOST_CROSSINGS} passages of a wave through {name} \
+         ({time:.3e} s), so impacts gain energy. Use dt = {:.1e} s or less.",
         case.analysis.dt,
         MOST_CROSSINGS * time
     ));
@@ -243,8 +244,8 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let is_sought = case.settles || case.initial == Some(Initial::Elastic);
     if footing && !stands && is_sought {
         report.warn(
-            "W0672: footing: Nothing else supports the ground, so it hangs from the footing in the initial equilibrium. Fix a \
-             side, or activate the footing in a [[stage]].",
+            "W0672: footing: nothing else supports the ground, so it hangs from the footing in the initial \
+             equilibrium. Fix a side, or activate the footing in a [[stage]].",
         );
     }
     let since_start = |case: &Case, number: usize| {
@@ -255,8 +256,8 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         case.prescribed[number].rests = lies && lifts;
         if lies && !lifts && is_sought && since_start(case, number) {
             report.warn(format!(
-                "W0672: {}: The ground hangs from this prescribed motion in the initial equilibrium. Activate it in a [[stage]], or \
-                 use [footing].",
+                "W0672: {}: the ground hangs from this prescribed motion in the initial equilibrium. Activate it in a \
+                 [[stage]], or use [footing].",
                 record.path
             ));
         }
@@ -312,8 +313,8 @@ pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
         |history: &History| matches!(history.quantity, Quantity::Runout { percentile, .. } if percentile < 100.0);
     let records_front = case.histories.iter().any(|history| history.quantity == Quantity::Front);
     if records_front && !case.histories.iter().any(is_percentile) {
-        let reason = "a front thinner than a cell runs ahead by 10 to 20 % of the run-out; quantity = \"runout\" with percentile \
-                      = 99 is more accurate";
+        let reason = "a front thinner than a cell runs ahead by 10 to 20 % of the run-out; quantity = \"runout\" with \
+                      percentile = 99 is more accurate";
         report.note("history", Measurement::Front.word(), reason);
     }
     let given = record.record("analysis").is_some_and(|analysis| analysis.gives("wall_velocity"));
@@ -336,27 +337,28 @@ pub(super) fn reached(case: &Case, axis: usize, upper: bool) -> bool {
 fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
     for (_, material) in case.materials.iter().enumerate().filter(|(number, _)| !case.is_followed(*number)) {
         report.warn(format!(
-            "W0313: material.{}: No body consists of this material. Assign it to a body, or remove it.",
+            "W0313: material.{}: no body consists of this material. Assign it to a body, or remove it.",
             material.name
         ));
     }
     let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
     if case.gravity.is_some() && !weighs && case.rigid.iter().all(|rigid| rigid.mass == [0.0; 2]) {
         report.warn(
-            "W0314: gravity: No body has mass, so gravity has no effect. Add `unit_weight` to the materials, or remove [gravity].",
+            "W0314: gravity: no body has mass, so gravity has no effect. Add `unit_weight` to the materials, or \
+             remove [gravity].",
         );
     }
     let dynamic = case.analysis.regime == Regime::Dynamic;
     if dynamic && case.analysis.mass == MassMatrix::Lumped && case.rotates_at_start() {
         report.warn(
-            "W0673: analysis.mass: Bodies rotate at the start, and the lumped mass matrix slows the rotation. Use mass = \
-             \"consistent\".",
+            "W0673: analysis.mass: bodies rotate at the start, and the lumped mass matrix slows the rotation. Use \
+             mass = \"consistent\".",
         );
     }
     if case.analysis.regime == Regime::QuasiStatic && !loaded(case) {
         report.warn(
-            "W0674: The case has no load: neither gravity, nor a force or pressure, nor a prescribed motion. Add one of them, for \
-             example [gravity].",
+            "W0674: the case has no load: neither gravity, nor a force or pressure, nor a prescribed motion. Add one \
+             of them, for example [gravity].",
         );
     }
 }
@@ -386,8 +388,8 @@ fn warn_of_locking(case: &Case, report: &mut Report<'_>) {
             false => continue,
         };
         report.warn(format!(
-            "W0315: stabilisation: material.{} {reason}: without stabilisation it is too stiff (locking) and its stress oscillates. \
-             Use method = \"consistent-f-bar\".",
+            "W0315: stabilisation: material.{} {reason}: without stabilisation it is too stiff (locking) and its \
+             stress oscillates. Use method = \"consistent-f-bar\".",
             named.name
         ));
         return;

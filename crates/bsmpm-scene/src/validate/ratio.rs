@@ -17,29 +17,30 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let material = &material.1;
     if !case.carries_pressure() {
         report.warn(format!(
-            "W0313: {}: No body consists of this material, so `ru` has no effect. Assign the material to a body, or remove it.",
+            "W0313: {}: no body consists of this material, so `ru` has no effect. Assign the material to a body, or \
+             remove it.",
             material.path_of(KEY)
         ));
         return;
     }
     if root.gives("water") || case.flow.is_some() {
         let message = if case.flow.is_some() {
-            "E0320: The pore pressure is already computed by the flow of water in this case. Remove `ru`, or `drainage` of all \
-             materials."
+            "E0320: the pore pressure is already computed by the flow of water in this case. Remove `ru`, or \
+             `drainage` of all materials."
         } else {
-            "E0320: The pore pressure is already given by the water table in [water]. Remove `ru`, or [water]."
+            "E0320: the pore pressure is already given by the water table in [water]. Remove `ru`, or [water]."
         };
         material.error(KEY, message, report);
     }
     match &case.gravity {
         None => {
-            let message = "E0321: A pore pressure ratio needs the weight of the ground. Add [gravity].";
+            let message = "E0321: a pore pressure ratio needs the weight of the ground. Add [gravity].";
             material.error(KEY, message, report);
         }
         Some(gravity) if !gravity.acts_down(case.grid.dims(), Some(case.analysis.regime)) => {
             let message = format!(
-                "E0321: A pore pressure ratio needs vertical gravity, and gravity.acceleration = {:?}. Set its other components \
-                 to 0.",
+                "E0321: a pore pressure ratio needs vertical gravity, and gravity.acceleration = {:?}. Set its other \
+                 components to 0.",
                 &gravity.acceleration[..case.grid.dims()]
             );
             material.error(KEY, message, report);
@@ -49,20 +50,20 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let changes = |stage: &crate::case::Stage| !(stage.add.is_empty() && stage.remove.is_empty());
     let exchanges = |stage: &crate::case::Stage| stage.materials.iter().any(|&(from, to)| wet(from) || wet(to));
     if case.stages.iter().any(|stage| changes(stage) || exchanges(stage)) {
-        let message = "E0322: The pore pressure from `ru` cannot follow stages that add or remove bodies or change materials. Use \
-                       [water], or leave out these stages.";
+        let message = "E0322: the pore pressure from `ru` cannot follow stages that add or remove bodies or change \
+                       materials. Use [water], or leave out these stages.";
         material.error(KEY, message, report);
     }
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
-        let message = "E0322: The pore pressure from `ru` cannot follow an earthquake. Remove `ru` or [shaking].";
+        let message = "E0322: the pore pressure from `ru` cannot follow an earthquake. Remove `ru` or [shaking].";
         material.error(KEY, message, report);
     }
     for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
         if matches!(support, Support::Absorbing | Support::FreeField) {
             let side = side.word();
             let message = format!(
-                "E0322: The pore pressure from `ru` is not available with the absorbing boundary `{side}`. Set boundary.{side} = \
-                 \"fixed\" or \"roller\"."
+                "E0322: the pore pressure from `ru` is not available with the absorbing boundary `{side}`. Set \
+                 boundary.{side} = \"fixed\" or \"roller\"."
             );
             material.error(KEY, message, report);
         }
@@ -91,8 +92,8 @@ fn warn_of_thin_bodies(case: &Case, report: &mut Report<'_>) {
         let thickest = thickest.fold(0.0, f64::max);
         if thickest < edge {
             report.warn(format!(
-                "W0316: ru: Bodies on a boundary with friction are {thickest:.3} m thick, less than a cell of {edge:.3} m. The \
-                 friction is up to 30 % too large. Use smaller cells."
+                "W0316: ru: bodies on a boundary with friction are {thickest:.3} m thick, less than a cell of \
+                 {edge:.3} m. The friction is up to 30 % too large. Use smaller cells."
             ));
         }
     }
@@ -103,8 +104,8 @@ fn warn_of_cubic_splines(case: &Case, report: &mut Report<'_>) {
     let has_side = (0..case.grid.dims() - 1).any(|axis| has_friction(case, axis));
     if case.grid.order > 2 && has_side {
         report.warn(
-            "W0317: ru: With cubic splines the friction on the sides of the grid has an error of up to 6 %. Use grid.degree \
-             = \"quadratic\".",
+            "W0317: ru: with cubic splines the friction on the sides of the grid has an error of up to 6 %. Use \
+             grid.degree = \"quadratic\".",
         );
     }
 }

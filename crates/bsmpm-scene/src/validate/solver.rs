@@ -55,13 +55,13 @@ fn weights(
     }
     if order? == 3 {
         let message =
-            "E0602: The quadrature \"fitted\" does not converge with cubic splines. Use quadrature = \"points\".";
+            "E0602: the quadrature \"fitted\" does not converge with cubic splines. Use quadrature = \"points\".";
         solver.error("quadrature", message, report);
         return None;
     }
     if regime? == Regime::Dynamic {
-        let message = "E0602: The quadrature \"fitted\" changes the energy of moving material, so dynamics cannot use it. Use \
-                       quadrature = \"points\".";
+        let message = "E0602: the quadrature \"fitted\" changes the energy of moving material, so it is not available \
+                       in dynamics. Use quadrature = \"points\".";
         solver.error("quadrature", message, report);
         return None;
     }
@@ -95,11 +95,12 @@ fn extended_splines(
     let given = solver.word_if_given(EXTENSION)?;
     let refusal = match (regime?, order?) {
         (Regime::Dynamic, _) => {
-            "E0603: In dynamics, extended splines accelerate layers that are thinner than a cell. Use extension = \"off\"."
+            "E0603: extension = \"linear\" is not available in dynamics, where it accelerates layers thinner than a \
+             cell. Use extension = \"off\"."
         }
         (Regime::QuasiStatic, 3) => {
-            "E0603: Extended splines do not improve cubic splines, and take five times the iterations. Use extension = \"off\", \
-             or grid.degree = \"quadratic\"."
+            "E0603: extension = \"linear\" is not available with cubic splines, where it does not improve the result. \
+             Use extension = \"off\"."
         }
         (Regime::QuasiStatic, _) => {
             let extended = given.unwrap_or(ExtendedSplines::Linear);
@@ -141,8 +142,8 @@ pub(super) fn warn_of_background(case: &Case, report: &mut Report<'_>) {
     let bears_loads = !case.has_prescribed_motion() || case.strength_reduction.is_some();
     if is_at_rest && bears_loads && case.solver.background > SOFT {
         report.warn(format!(
-            "W0602: solver.background: The artificial stiffness of empty cells ({:e}) is above {SOFT:e} and makes the ground too \
-             strong. Remove `background`.",
+            "W0602: solver.background: the artificial stiffness of empty cells ({:e}) is above {SOFT:e} and makes the \
+             ground too strong. Remove `background`.",
             case.solver.background
         ));
     }
@@ -196,22 +197,22 @@ const MANY_IN_SPACE: u64 = 150_000;
 /// The same of nearly incompressible material, from which multigrid over the grid's splines is taken (same place).
 const FEW_INCOMPRESSIBLE: u64 = 100_000;
 
-/// Chooses the linear solver of a 3-D case with many unknowns unless the case gives it, and refuses iterative ones where
-/// they are not available.
+/// Chooses the linear solver of a 3-D case with many unknowns unless the case gives it, and refuses iterative ones
+/// where they are not available.
 pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let Some(solver) = root.record("solver") else { return };
     let condenses = case.rigid.iter().any(|rigid| rigid.free.contains(&true));
     let is_own = case.solver.linear.pc == Pc::SplineMultigrid;
     if (is_own || case.solver.linear.applications > 0) && (case.flow.is_some() || condenses) {
         let what = if condenses { "freely moving rigid bodies" } else { "flow of water" };
-        let message = format!("E0604: This linear solver is not available with {what}. Use linear = \"direct\".");
+        let message = format!("E0604: this linear solver is not available with {what}. Use linear = \"direct\".");
         solver.error("linear", message, report);
         return;
     }
     let (dims, active) = (case.grid.dims(), case.estimate(1).active);
     if dims < 3 && is_own {
         let message =
-            "E0604: The linear solver \"spline-multigrid\" is available in 3-D only. Use linear = \"direct\".";
+            "E0604: the linear solver \"spline-multigrid\" is available in 3-D only. Use linear = \"direct\".";
         solver.error("linear", message, report);
         return;
     }
@@ -240,7 +241,8 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         } else if case.solver.linear.factor.is_some() {
             case.solver.linear = Linear { by_size: true, ..in_a_word(LinearSolver::SplineMultigrid) };
             let reason = format!(
-                "{so_many} {what}: above {FEW_INCOMPRESSIBLE} faster than a direct solver; several ranks use the direct one"
+                "{so_many} {what}: above {FEW_INCOMPRESSIBLE} faster than a direct solver; several ranks use the direct \
+                 one"
             );
             chosen(LinearSolver::SplineMultigrid, reason, report);
         }
@@ -251,8 +253,8 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     case.solver.linear = Linear { by_size: true, ..in_a_word(word) };
     let reason = match many {
         true => format!(
-            "{so_many}: above {MANY_IN_SPACE} faster than other solvers; on several ranks only with solver.reproducible = \
-             false, as it is not bitwise reproducible there"
+            "{so_many}: above {MANY_IN_SPACE} faster than other solvers; on several ranks only with \
+             solver.reproducible = false, as it is not bitwise reproducible there"
         ),
         false => format!("{so_many}: above {FEW_IN_SPACE} faster than a direct solver, with less memory"),
     };
@@ -284,8 +286,8 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
     let ksp = asked.ksp.unwrap_or(if pc.solves() { Ksp::Preonly } else { Ksp::Cg });
     if ksp == Ksp::Preonly && !pc.solves() {
         let message = format!(
-            "E0605: ksp = \"{ksp}\" needs a direct solver, and pc = \"{pc}\" is iterative. Use pc = \"cholesky\", \"lu\" or \
-             \"redundant\"."
+            "E0605: ksp = \"{ksp}\" needs a direct solver, and pc = \"{pc}\" is iterative. Use pc = \"cholesky\", \
+             \"lu\" or \"redundant\"."
         );
         linear.error("ksp", message, report);
         return None;
@@ -293,8 +295,8 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
     let dissects = ksp == Ksp::Preonly && pc == Pc::Cholesky;
     if asked.factor == Some(Factor::Dissection) && !dissects {
         let message = format!(
-            "E0605: factor = \"dissection\" is not available with ksp = \"{ksp}\" and pc = \"{pc}\". Use ksp = \"preonly\" and pc = \
-             \"cholesky\"."
+            "E0605: factor = \"dissection\" is not available with ksp = \"{ksp}\" and pc = \"{pc}\". Use ksp = \
+             \"preonly\" and pc = \"cholesky\"."
         );
         linear.error("factor", message, report);
         return None;
@@ -305,8 +307,8 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
         (false, Some(factor)) => {
             let path = linear.path_of("factor");
             report.warn(format!(
-                "W0603: {path}: The factorisation \"{factor}\" is not used, because pc = \"{pc}\" is an iterative method. Remove \
-                 `factor`."
+                "W0603: {path}: the factorisation \"{factor}\" is not used, because pc = \"{pc}\" is an iterative \
+                 method. Remove `factor`."
             ));
             None
         }

@@ -92,8 +92,8 @@ fn stage(
     let strength_reduction = record.number("strength_reduction");
     let is_still = is_still && strength_reduction.is_none() && !record.gives("strength_reduction");
     if is_still && faces.is_empty() && materials.is_empty() && !resets_displacements {
-        let message = "E0611: The stage changes nothing. Add `add`, `remove`, `activate`, `deactivate`, `boundary`, `materials`, \
-                       `strength_reduction` or `reset_displacements`.";
+        let message = "E0611: the stage changes nothing. Add `add`, `remove`, `activate`, `deactivate`, `boundary`, \
+                       `materials`, `strength_reduction` or `reset_displacements`.";
         report.error(record.origin, &record.path, message);
     }
     let name = record.text("name").map(str::to_owned);
@@ -130,7 +130,7 @@ fn named<T: Copy>(
         let found = all.next().map(|(_, what)| (name.clone(), *what));
         if !bodies && all.next().is_some() {
             let message = format!(
-                "E0610: Several loads, motions or rigid bodies have the name `{}`. Rename all but one of them.",
+                "E0610: several loads, motions or rigid bodies have the name `{}`. Rename all but one of them.",
                 shortened(name)
             );
             record.error(key, message, report);
@@ -153,22 +153,23 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
     for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
         let (support, contact) = (super::support(boundary, side)?, super::contact(boundary, side, factor, report)?);
         if support == Support::FreeField {
-            let message = "E0614: A free-field boundary must exist from the start. Set it in [boundary], and remove it from the \
-                           stage.";
+            let message = "E0614: a free-field boundary must exist from the start. Set it in [boundary], and remove \
+                           it from the stage.";
             boundary.error(side.word(), message, report);
         }
         let is_wet = root.gives("water") || root.named("material").iter().any(|(_, of)| of.gives("drainage"));
         let is_solid = root.word("geometry") == Some(Geometry::Solid);
         if support == Support::Absorbing && (side != Side::Bottom || is_wet || is_solid) {
-            let message = "E0614: A stage can make only the bottom absorbing, and only in 2-D without water. Set it in [boundary], \
-                           with [initial].";
+            let message = "E0614: a stage can make only the bottom absorbing, and only in 2-D without water. Set it \
+                           in [boundary], with [initial].";
             boundary.error(side.word(), message, report);
         }
         let moves = |motion: &Record| motion.word::<Side>("face") == Some(side);
         if let Some(motion) = root.records("prescribed").iter().find(|motion| support != Support::Free && moves(motion))
         {
             let message = format!(
-                "E0615: {} already moves this boundary, so the stage cannot support it. Remove it from the stage.",
+                "E0615: {} already moves this boundary, so the stage cannot support it. Remove the boundary from the \
+                 stage.",
                 motion.path
             );
             boundary.error(side.word(), message, report);
@@ -195,7 +196,7 @@ fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<
         let (from, to) = (number("from"), number("to"));
         let (from, to) = (from?, to?);
         if found.iter().any(|(other, _)| *other == from) {
-            let message = "E0617: This stage already replaces this material. Remove one of the two replacements.";
+            let message = "E0617: this stage already replaces this material. Remove one of the two replacements.";
             pair.error("from", message, report);
         }
         found.push((from, to));
@@ -210,13 +211,12 @@ fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &m
         let [releases, applies] = stage.switches(*what);
         if releases && applies {
             let message =
-                format!("E0618: The stage activates and deactivates `{name}`. Remove it from one of the lists.");
+                format!("E0618: the stage both activates and deactivates `{name}`. Remove it from one of the lists.");
             record.error("activate", message, report);
         } else if (releases && acts == Some(false)) || (applies && acts == Some(true)) {
             let (key, state) = if releases { ("deactivate", "inactive") } else { ("activate", "active") };
-            let message = format!(
-                "E0619: `{name}` is already {state} since an earlier stage. Remove it from the list of one of the stages."
-            );
+            let message =
+                format!("E0619: `{name}` is already {state} when this stage begins. Remove it from this list.");
             record.error(key, message, report);
         }
         acts = if releases || applies { Some(applies) } else { acts };
@@ -226,13 +226,14 @@ fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &m
 fn timed(at: f64, (before, end, dt): (f64, f64, f64), record: &Record, report: &mut Report<'_>) {
     if at >= end {
         let message = format!(
-            "E0620: The stage begins at {at} s, but the run ends at {end} s. Use an earlier time, or increase `analysis.end`."
+            "E0620: the stage begins at t = {at}, but the run ends at t = {end}. Use an earlier time, or increase \
+             `analysis.end`."
         );
         record.error("at", message, report);
     } else if at - before <= APART * dt {
         let message = format!(
-            "E0621: The stage begins at {at} s, not after the start or the previous stage ({before} s). Increase `at`, or sort \
-             the stages."
+            "E0621: the stage begins at t = {at}, not after the start or the previous stage (t = {before}). Increase \
+             `at`, or sort the stages."
         );
         record.error("at", message, report);
     }
@@ -251,13 +252,18 @@ fn once(body: usize, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
     let (added, removed) = (all(|stage| &stage.add), all(|stage| &stage.remove));
     if let Some(&again) = added.get(1) {
         let message = format!(
-            "E0622: body.{body} is already added by stage.{}, and a body can be added only once. Remove one of the two.",
+            "E0622: body.{body} is already added by stage.{}, and a body can be added only once. Remove one of the \
+             two entries.",
             added[0]
         );
         records[again].error("add", message, report);
     }
     if let Some(&again) = removed.get(1) {
-        let message = format!("E0622: body.{body} is already removed by stage.{}. Delete one of the two.", removed[0]);
+        let message = format!(
+            "E0622: body.{body} is already removed by stage.{}, and a body can be removed only once. Delete one of \
+             the two entries.",
+            removed[0]
+        );
         records[again].error("remove", message, report);
     }
     if let (Some(&added), Some(&removed)) = (added.first(), removed.first())
@@ -279,12 +285,12 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let records = root.records("stage");
     if case.bodies_at_start().next().is_none() {
         let message =
-            "E0623: No body exists at the start, because stages add all bodies. Take one out of the `add` lists.";
+            "E0623: no body exists at the start, because stages add all bodies. Take one out of the `add` lists.";
         root.error("body", message, report);
     }
     for (stage, record) in case.stages.iter().zip(records) {
         if !(0..case.bodies.len()).any(|body| case.is_there(body, stage.at)) {
-            let message = "E0623: No body is left after this stage. Keep at least one body.";
+            let message = "E0623: no body is left after this stage. Keep at least one body.";
             record.error("remove", message, report);
         }
         for (name, what) in &stage.apply {
@@ -295,7 +301,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             };
             if has_moved {
                 let message = format!(
-                    "E0624: The path of `{name}` begins before the stage activates it, away from its soil. Begin the path at {} s.",
+                    "E0624: the path of `{name}` begins before the stage activates it, so it would act away from its \
+                     soil. Begin the path at t = {}.",
                     stage.at
                 );
                 record.error("activate", message, report);
@@ -313,8 +320,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             let named = &case.materials[case.bodies[body].material];
             if !named.material.is_linear() {
                 let message = format!(
-                    "E0625: body.{body} is added without stress, and material.{} needs a stress for its stiffness. Use a model with \
-                     constant stiffness.",
+                    "E0625: body.{body} is added without stress, but the stiffness of material.{} follows from its \
+                     stress. Use a model with constant stiffness.",
                     named.name
                 );
                 record.error("add", message, report);
@@ -339,8 +346,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         };
         if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !held(place)) {
             let message = format!(
-                "E0626: Stages add or remove the body at {:?}, and one body must stay there {duration}. Move it, or split it by \
-                 bodies.",
+                "E0626: a stage adds or removes the body at {:?}, where one body must stay {duration}. Move this \
+                 place, or keep that body.",
                 &at[..case.grid.dims()]
             );
             record.error(key, message, report);
@@ -360,22 +367,22 @@ fn beside_absorbing(case: &Case, stage: &Stage, record: &Record, report: &mut Re
     if case.shakes_from() < stage.at {
         refuse(
             "at",
-            "E0627: With absorbing boundaries a stage that changes the ground must begin before the earthquake. Let [shaking] \
-             begin later.",
+            "E0627: with absorbing boundaries a stage that changes the ground must begin before the earthquake. Let \
+             [shaking] begin later.",
         );
     }
     if stage.strength_reduction.is_some() {
         refuse(
             "strength_reduction",
-            "E0627: A stage cannot reduce the strength if boundaries are absorbing, because failing ground moves. Make them \
-             \"fixed\".",
+            "E0627: a stage cannot reduce the strength next to absorbing boundaries, because failing ground moves. \
+             Make those boundaries \"fixed\".",
         );
     }
     if case.is_ever(Support::Contact) || !case.rigid.is_empty() {
         refuse(
             "at",
-            "E0627: Stages with absorbing boundaries are not available with boundaries in contact or rigid bodies. Make the \
-             absorbing boundaries \"fixed\".",
+            "E0627: stages with absorbing boundaries are not available with boundaries in contact or rigid bodies. \
+             Make the absorbing boundaries \"fixed\".",
         );
     }
     let grows = |what: Acting| match what {
@@ -385,15 +392,15 @@ fn beside_absorbing(case: &Case, stage: &Stage, record: &Record, report: &mut Re
     if case.still_grows(stage.at) || stage.apply.iter().any(|(_, what)| grows(*what)) {
         refuse(
             "at",
-            "E0627: With absorbing boundaries all loads must be constant when a stage begins. End their `ramp` or `amplitude` \
-             earlier, or use ramp = 0.",
+            "E0627: with absorbing boundaries all loads must be constant when a stage begins. End their `ramp` or \
+             `amplitude` earlier, or use ramp = 0.",
         );
     }
     if stage.release.iter().any(|(_, what)| !matches!(what, Acting::Load(_))) {
         refuse(
             "deactivate",
-            "E0627: With absorbing boundaries a stage can deactivate loads only, no footing or prescribed motion. Make the \
-             boundaries \"fixed\".",
+            "E0627: with absorbing boundaries a stage can deactivate loads only, no footing or prescribed motion. \
+             Make the boundaries \"fixed\".",
         );
     }
     for of in faces.iter().filter(|of| of.support == Support::FreeField) {
@@ -406,7 +413,8 @@ fn beside_absorbing(case: &Case, stage: &Stage, record: &Record, report: &mut Re
             let bodies = if key == "add" { &stage.add } else { &stage.remove };
             if bodies.iter().any(is_in) {
                 let message = format!(
-                    "E0628: The body lies in the cells at the free-field boundary `{}`, which must not change. Keep it one cell away.",
+                    "E0628: the body lies in the cells at the free-field boundary `{}`, which must not change. Keep \
+                     it one cell away.",
                     of.face.side(case.geometry).word()
                 );
                 refuse(key, &message);
@@ -415,14 +423,15 @@ fn beside_absorbing(case: &Case, stage: &Stage, record: &Record, report: &mut Re
         if !stage.materials.is_empty() {
             refuse(
                 "materials",
-                "E0628: A stage cannot change materials if a side is a free field, which keeps its own. Make the side \"fixed\" or \
-                 \"roller\".",
+                "E0628: a stage cannot change materials if a side is a free field, which keeps its own. Make the side \
+                 \"fixed\" or \"roller\".",
             );
         }
         if stage.faces.iter().any(|of| of.face.axis == 0) {
             refuse(
                 "boundary",
-                "E0628: A stage cannot change the left or right boundary if a side is a free field. Change \"bottom\" or \"top\" only.",
+                "E0628: a stage cannot change the left or right boundary if a side is a free field. Change \"bottom\" \
+                 or \"top\" only.",
             );
         }
     }
@@ -432,7 +441,7 @@ fn beside_absorbing(case: &Case, stage: &Stage, record: &Record, report: &mut Re
 fn exchanged(case: &Case, (from, to): (usize, usize), pair: &Record, report: &mut Report<'_>) {
     let [from, to] = [from, to].map(|number| (number, &case.materials[number]));
     if !case.bodies.iter().any(|body| body.material == from.0) {
-        let message = format!("E0613: No body consists of material.{}. Name a material of a body.", from.1.name);
+        let message = format!("E0613: no body consists of material.{}. Name a material of a body.", from.1.name);
         pair.error("from", message, report);
     }
     if from.1.density != to.1.density {
@@ -445,8 +454,8 @@ fn exchanged(case: &Case, (from, to): (usize, usize), pair: &Record, report: &mu
     }
     if !to.1.material.is_linear() {
         let message = format!(
-            "E0625: material.{} needs its own stress history, which the replaced material does not have. Use a model with \
-             constant stiffness.",
+            "E0625: the stiffness of material.{} depends on its stress history, which the replaced material does not \
+             have. Use a model with constant stiffness.",
             to.1.name
         );
         pair.error("to", message, report);

@@ -54,10 +54,10 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         _ => "Reduce `grid.cell`",
     };
-    let wave = if input.axis.is_some() { "Compression" } else { "Shear" };
+    let wave = if input.axis.is_some() { "compression" } else { "shear" };
     report.warn(format!(
-        "W0680: {}: {wave} waves of {:.3} Hz have {cells:.1} cells per wavelength (at least {fewest} needed): their speed is \
-         wrong by more than 2 %. {remedy}.",
+        "W0680: {}: {wave} waves of {:.3} Hz have {cells:.1} cells per wavelength (at least {fewest} needed): their \
+         speed is wrong by more than 2 %. {remedy}.",
         input.name, input.frequency
     ));
 }

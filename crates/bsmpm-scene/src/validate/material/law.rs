@@ -76,12 +76,12 @@ pub(super) fn law(
     let unused = all.iter().filter(|key| !required.contains(key) && !known.contains(key));
     for key in unused.filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
         let message =
-            format!("E0304: The model \"{model}\" has no such parameter. Remove `{key}`, or choose another model.");
+            format!("E0304: the model \"{model}\" has no such parameter. Remove `{key}`, or choose another model.");
         record.error(key, message, report);
         whole = false;
     }
     for key in required.iter().filter(|key| !record.gives(key)) {
-        let message = format!("E0305: The model \"{model}\" needs this parameter. Add `{key}`.");
+        let message = format!("E0305: the model \"{model}\" needs this parameter. Add `{key}`.");
         report.error(record.origin, &record.path_of(key), message);
         whole = false;
     }
@@ -112,8 +112,8 @@ pub(super) fn law(
     let [slow, fast] = ["mu_s", "mu_2"].map(|key| parameters.of(key).value);
     if model == LawName::MuI && slow > fast {
         let message = format!(
-            "E0306: The friction coefficient at large rates ({fast}) is below that at rest, mu_s = {slow}. Set `mu_2` to at least \
-             `mu_s`."
+            "E0306: the friction coefficient at large rates ({fast}) is below that at rest, mu_s = {slow}. Set `mu_2` \
+             to at least `mu_s`."
         );
         record.error("mu_2", message, report);
         return None;
@@ -145,8 +145,8 @@ fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, re
         let limit = 1.5 * 0.5 * young.at(y) / (1.0 + poisson);
         if rate > limit {
             report.warn(format!(
-                "W0305: {}: The cohesion falls by {rate:.3e} Pa per unit of plastic strain (limit {limit:.3e} Pa), so it drops \
-                 at once. Use smaller cells, or a larger `softening_strain`.",
+                "W0305: {}: the cohesion falls by {rate:.3e} Pa per unit of plastic strain (limit {limit:.3e} Pa), so \
+                 it drops at once. Use smaller cells, or a larger `softening_strain`.",
                 record.path
             ));
             return;
@@ -166,7 +166,7 @@ fn remould(record: &Record, law: &mut Parameters, report: &mut Report<'_>) -> Op
     if record.gives("rate_parameter") != record.gives("reference_rate") {
         let missing = if record.gives("rate_parameter") { "reference_rate" } else { "rate_parameter" };
         let message = format!(
-            "E0305: A rate-dependent strength needs both `rate_parameter` and `reference_rate`. Add `{missing}`."
+            "E0305: a rate-dependent strength needs both `rate_parameter` and `reference_rate`. Add `{missing}`."
         );
         report.error(record.origin, &record.path_of(missing), message);
         return None;
@@ -179,15 +179,16 @@ fn star(record: &Record, values: &mut Vec<(&'static str, Profile)>, report: &mut
     const SLOPES: [[&str; 2]; 2] = [["kappa_star", "kappa"], ["lambda_star", "lambda"]];
     let of_volume = SLOPES.into_iter().find(|[_, slope]| record.gives(slope));
     if let Some([_, slope]) = of_volume.filter(|_| !record.gives("void_ratio")) {
-        let message = "E0314: The slope of v over ln p' needs the initial void ratio. Add `void_ratio`, or use `kappa_star` = \
-                       kappa/(1 + e0) and `lambda_star` = lambda/(1 + e0).";
+        let message = "E0314: the slope of v over ln p' needs the initial void ratio. Add `void_ratio`, or use \
+                       `kappa_star` = kappa/(1 + e0) and `lambda_star` = lambda/(1 + e0).";
         record.error(slope, message, report);
         return None;
     }
     for [starred, slope] in SLOPES {
         if !record.gives(starred) && !record.gives(slope) {
             let message = format!(
-                "E0305: The model \"modified-cam-clay\" needs this slope. Add `{starred}`, or `{slope}` and `void_ratio`."
+                "E0305: the model \"modified-cam-clay\" needs this slope. Add `{starred}`, or `{slope}` and \
+                 `void_ratio`."
             );
             report.error(record.origin, &record.path_of(starred), message);
             return None;
@@ -207,14 +208,14 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     let [kappa, lambda] = ["kappa_star", "lambda_star"].map(|key| law.of(key).value);
     if lambda <= kappa {
         let message = format!(
-            "E0307: The slope of the normal compression line ({lambda}) does not exceed that of unloading, kappa_star = \
-             {kappa}. Correct `lambda_star` or `kappa_star`."
+            "E0307: the slope of the normal compression line ({lambda}) does not exceed that of unloading, kappa_star \
+             = {kappa}. Correct `lambda_star` or `kappa_star`."
         );
         record.error("lambda_star", message, report);
         return None;
     }
     if !record.gives("preconsolidation") && !record.gives("ocr") {
-        let message = "E0305: The model \"modified-cam-clay\" needs the size of its initial yield surface. Add \
+        let message = "E0305: the model \"modified-cam-clay\" needs the size of its initial yield surface. Add \
                        `preconsolidation` or `ocr`.";
         report.error(record.origin, &record.path_of("preconsolidation"), message);
         return None;
@@ -232,8 +233,8 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     );
     if record.number("ocr").is_some_and(|ocr| ocr > 2.0) {
         report.warn(format!(
-            "W0306: {}: The clay softens and dilates in shear, because ocr exceeds 2. Results depend on the cell size. Compare \
-             two sizes of `grid.cell`.",
+            "W0306: {}: the clay softens and dilates in shear, because ocr exceeds 2. Results depend on the cell \
+             size. Compare two sizes of `grid.cell`.",
             record.path
         ));
     }
@@ -257,8 +258,8 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
             return Some(());
         }
         report.warn(format!(
-            "W0307: {}: The material softens, and shear bands become two cells wide, so results depend on the cell size. Add \
-             `band_width`, or compare two cell sizes.",
+            "W0307: {}: the material softens, and shear bands become two cells wide, so results depend on the cell \
+             size. Add `band_width`, or compare two cell sizes.",
             record.path
         ));
         return Some(());
@@ -270,7 +271,7 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
     );
     if longest > SQUARE * shortest {
         let message = format!(
-            "E0316: A shear band width needs cells of one size, and these are {shortest} to {longest} m long. Give \
+            "E0316: a shear band width needs cells of one size, and these are {shortest} to {longest} m long. Give \
              `grid.cell` one number."
         );
         record.error("band_width", message, report);
@@ -304,8 +305,8 @@ fn all_keys() -> Vec<&'static str> {
 /// The error of a dilation angle above the friction angle, deg.
 fn dilates_too_much(dilation: f64, friction: f64) -> String {
     format!(
-        "E0308: The dilation angle ({dilation} deg) exceeds the friction angle ({friction} deg). Reduce the dilation angle to the \
-         friction angle or less."
+        "E0308: the dilation angle ({dilation} deg) exceeds the friction angle ({friction} deg). Reduce the dilation \
+         angle to the friction angle or less."
     )
 }
 
@@ -333,14 +334,14 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     if dilation.1 > friction.0 {
         let path = record.path_of("dilation_angle");
         report.warn(format!(
-            "W0308: {path}: The dilation angle ({} deg) exceeds the friction angle at some heights, where it is reduced to it. \
-             Give both angles by height.",
+            "W0308: {path}: the dilation angle ({} deg) exceeds the friction angle at some heights and is reduced to \
+             it there. Vary both with height.",
             dilation.1
         ));
     }
     if friction.1 == 0.0 && cohesion.1 == 0.0 {
         report.warn(format!(
-            "W0309: {}: Friction angle and cohesion are both 0, so the material has no shear strength. Correct \
+            "W0309: {}: friction angle and cohesion are both 0, so the material has no shear strength. Correct \
              `friction_angle` or `cohesion`.",
             record.path
         ));
@@ -351,8 +352,8 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi
     // until it has closed, and without friction there is no apex.
     if record.word("separation") == Some(Separation::Closing) && (friction.0 <= 0.0 || cohesion.1 > 0.0) {
-        let message = "E0317: The option \"gap\" is for soil with friction and without cohesion. Set cohesion = 0, or remove \
-                       `separation`.";
+        let message = "E0317: \"gap\" needs a friction angle above 0 and no cohesion, because a gap opens at zero \
+                       stress only. Set cohesion = 0, or remove `separation`.";
         record.error("separation", message, report);
     }
     Some(())
@@ -368,8 +369,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
         if !record.gives("fit") {
             report.warn(format!(
-                "W0310: {}: The default cone is for plane strain. Here it has {:.1} % of the Mohr-Coulomb strength in \
-                 triaxial compression and {:.1} % in extension. Set `fit`.",
+                "W0310: {}: the default cone is made for plane strain; here it has {:.1} % of the Mohr-Coulomb \
+                 strength in triaxial compression, {:.1} % in extension. Use fit = \"outer\" or \"inner\".",
                 record.path_of("fit"),
                 100.0 * cone.strength_over(Match::Outer),
                 100.0 * cone.strength_over(Match::Inner)
@@ -380,8 +381,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
     let ratio = cone.strength_in_plane_strain();
     if (ratio - 1.0).abs() > 0.005 {
         report.warn(format!(
-            "W0311: {}: In plane strain this Drucker-Prager cone has {:.1} % of the Mohr-Coulomb strength. If that is not \
-             meant, use model = \"mohr-coulomb\".",
+            "W0311: {}: in plane strain this Drucker-Prager cone has {:.1} % of the Mohr-Coulomb strength. If this is \
+             not intended, use model = \"mohr-coulomb\".",
             record.path,
             100.0 * ratio
         ));
