@@ -1,7 +1,11 @@
 //! Histories and the checks of their columns.
 
-use super::{flow, place, site};
-use crate::case::{Body, Check, Column, Counted, Face, History, Made, NamedMaterial, Quantity, Support};
+mod location;
+
+pub(super) use location::ends;
+
+use super::flow;
+use crate::case::{Body, Check, Column, Counted, History, Made, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::{hint, unknown_name};
 use crate::record::Record;
@@ -9,6 +13,7 @@ use crate::report::{Report, shortened};
 use crate::unit::Dimension;
 use crate::words::{Geometry, Measurement, Side, Word};
 use bsmpm::model::Regime;
+use location::{at, at_surface, at_x, face, section, within};
 use std::collections::HashSet;
 
 /// Histories at most, each a column or several of every row.
@@ -364,105 +369,6 @@ fn weighing(of: Counted, record: &Record, made: CaseBodies<'_>, report: &mut Rep
         return None;
     }
     Some(of)
-}
-
-/// Lines of a section, and whether it is a disc: in a plane itself, of a solid the middle lines of a plate.
-fn section(
-    (root, record): (&Record, &Record),
-    grid: Option<&GridSpec>,
-    report: &mut Report<'_>,
-) -> Option<(Vec<[[f64; 3]; 2]>, bool)> {
-    if root.word::<Geometry>("geometry")? != Geometry::Solid {
-        return Some((vec![ends(record, grid, report)?], false));
-    }
-    if !record.gives("rectangle") && !record.gives("disc") {
-        let message = "E0644: a section in 3-D needs a plane area. Add `rectangle` or `disc`.";
-        report.error(record.origin, &record.path, message);
-        return None;
-    }
-    let plate = site::plate(record, grid?, report)?;
-    Some((plate.lines().into(), plate.round))
-}
-
-/// Ends of a line that has a length.
-pub(super) fn ends(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let [from, to] = [record.vector("from"), record.vector("to")];
-    let ends = [from?, to?];
-    if ends[0] == ends[1] {
-        let message = format!(
-            "E0651: the line begins and ends at {:?}, so its length is 0. Correct `from` or `to`.",
-            record.numbers("to")?
-        );
-        record.error("to", message, report);
-        return None;
-    }
-    for (key, end) in ["from", "to"].into_iter().zip(ends) {
-        if let Some(beyond) = grid.and_then(|grid| place::is_beyond(grid, end)) {
-            record.error(key, beyond, report);
-        }
-    }
-    Some(ends)
-}
-
-/// The face of a history.
-fn face(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Face> {
-    let (side, geometry) = (record.word::<Side>("face")?, root.word::<Geometry>("geometry")?);
-    let face = Face::of(side, geometry);
-    if face.is_none() {
-        let message = format!("E0653: a {geometry} grid has no face \"{side}\". Name another face.");
-        record.error("face", message, report);
-    }
-    face
-}
-
-fn at_surface(record: &Record) -> Option<bool> {
-    if record.gives("surface") { record.flag("surface") } else { Some(false) }
-}
-
-/// The x of a height, if it has one; the outer option is `None` after an error.
-fn at_x(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<Option<f64>> {
-    if !record.gives("at_x") {
-        return Some(None);
-    }
-    let x = record.number("at_x")?;
-    if let Some(beyond) = grid.and_then(|grid| place::beyond(grid, [x])) {
-        record.error("at_x", beyond, report);
-    }
-    Some(Some(x))
-}
-
-/// A box that has something in common with the grid.
-fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let (lower, upper) = (record.vector("lower")?, record.vector("upper")?);
-    if let Some(grid) = grid {
-        let axes = grid.dims();
-        let (low, high) = (&lower[..axes], &upper[..axes]);
-        if (0..axes).any(|axis| lower[axis] >= upper[axis]) {
-            let message = format!(
-                "E0651: the box is empty, because its upper corner {high:?} is not above its lower corner {low:?}. \
-                 Correct `upper` or `lower`."
-            );
-            record.error("upper", message, report);
-        }
-        let (start, end) = (grid.lower(), grid.upper());
-        if (0..axes).any(|axis| upper[axis] <= start[axis] || lower[axis] >= end[axis]) {
-            let message = format!(
-                "E0650: the box is outside the grid, which spans {:?} to {:?}. Move it into the grid.",
-                &start[..axes],
-                &end[..axes]
-            );
-            report.error(record.origin, &record.path, message);
-        }
-    }
-    Some([lower, upper])
-}
-
-fn at(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[f64; 3]> {
-    let at = record.vector("at")?;
-    if let Some(beyond) = grid.and_then(|grid| place::is_beyond(grid, at)) {
-        record.error("at", beyond, report);
-    }
-    Some(at)
 }
 
 /// All checks in the order of the file, without those that have an error.
