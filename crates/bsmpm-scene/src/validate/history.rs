@@ -7,7 +7,7 @@ pub(super) use location::ends;
 use super::flow;
 use crate::case::{Body, Check, Column, Counted, History, Made, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
-use crate::nearest::{hint, unknown_name};
+use crate::nearest::{nearest, unknown_name};
 use crate::record::Record;
 use crate::report::{Report, shortened};
 use crate::unit::Dimension;
@@ -382,11 +382,13 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
         || histories.iter().flat_map(|history| history.columns().into_iter().map(move |column| (history, column)));
     let Some((_, column)) = columns().find(|(_, column)| column.name == quantity) else {
         let names: Vec<String> = columns().map(|(_, column)| column.name).collect();
-        let hint = hint(quantity, names.iter().map(String::as_str));
-        let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        let known = match nearest(quantity, names.iter().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if names.is_empty() => "there is none".to_owned(),
+            None => format!("there are {}", names.join(", ")),
+        };
         let message = format!(
-            "E0660: no [[history]] has a column `{}`{hint} (columns: {known}). Correct the name, or add a \
-             [[history]].",
+            "E0660: no [[history]] has a column `{}` ({known}). Correct the name, or add a [[history]].",
             shortened(quantity)
         );
         record.error("quantity", message, report);

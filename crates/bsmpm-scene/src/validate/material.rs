@@ -276,8 +276,7 @@ const STIFF_TO_FLOW: f64 = 0.499;
 fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {
     if let Some(young) = young.filter(|young| !(1e3..=1e12).contains(young)) {
         report.warn(format!(
-            "W0302: {}: Young's modulus is {young:e} Pa ({:e} kPa); usual are 1 kPa to 1000 GPa. Check the unit of \
-             `young`.",
+            "W0302: {}: Young's modulus is {} kPa; usual are 1 kPa to 1000 GPa. Check the unit of `young`.",
             record.path,
             young * 1e-3
         ));

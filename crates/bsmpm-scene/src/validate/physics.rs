@@ -44,7 +44,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 fn too_soon(case: &Case, record: &Record, report: &mut Report<'_>) {
     let least = 1e-6 * case.analysis.dt;
     let message =
-        |time: f64| format!("E0664: the time {time} is not after the start, t = 0. Use a time above {least:e}.");
+        |time: f64| format!("E0664: the time {time:e} is not after the start, t = 0. Use a time above {least:e}.");
     if let (Some(time), Some(output)) = (case.output.times.first(), record.record("output"))
         && *time <= least
     {

@@ -52,17 +52,12 @@ pub const RIGID: &[Row] = &[
         "no motion is `free`",
     )
     .down(1),
-    row(
-        "rigid    = \"pipe\"",
-        "rigid    = \"pip\"",
-        "history.10.rigid",
-        "there is no rigid body `pip`; did you mean `pipe`",
-    ),
+    row("rigid    = \"pipe\"", "rigid    = \"pip\"", "history.10.rigid", "E0612"),
     row(
         "[[history]]\nquantity = \"rigid-force\"\nrigid    = \"pipe\"",
         "[[history]]\nquantity = \"rigid-force\"",
         "history.10.rigid",
-        "missing; quantity \"rigid-force\" needs it",
+        "E0644",
     ),
-    row("quantity = \"heave\"", "quantity = \"heave\"\nrigid = \"pipe\"", "history.5.rigid", "has no meaning").down(1),
+    row("quantity = \"heave\"", "quantity = \"heave\"\nrigid = \"pipe\"", "history.5.rigid", "E0642").down(1),
 ];

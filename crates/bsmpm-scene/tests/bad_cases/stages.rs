@@ -6,12 +6,12 @@ use super::{Row, row};
 pub const STAGES: &[Row] = &[
     row("add  = [\"fill\"]", "add = [\"fil\"]", "stage.0.add", "did you mean `fill`?"),
     row("add  = [\"fill\"]", "add = \"fill\"", "stage.0.add", "expected a list of names"),
-    row("add  = [\"fill\"]", "add = []", "stage.0", "it changes nothing").up(3),
-    row("add  = [\"fill\"]", "add = [\"fill\", \"fill\"]", "stage.0.add", "has been placed before"),
-    row("remove = [\"fill\"]", "remove = [\"fill\", \"fill\"]", "stage.1.remove", "has been removed before"),
-    row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "is not there yet").down(1),
-    row("add  = [\"fill\"]", "activate = [\"fill\"]", "stage.0.activate", "there is no [[traction]]"),
-    row("add  = [\"fill\"]", "activate = [\"plough\"]", "stage.0.activate", "plough has moved before it acts"),
+    row("add  = [\"fill\"]", "add = []", "stage.0", "E0611").up(3),
+    row("add  = [\"fill\"]", "add = [\"fill\", \"fill\"]", "stage.0.add", "E0622"),
+    row("remove = [\"fill\"]", "remove = [\"fill\", \"fill\"]", "stage.1.remove", "E0622"),
+    row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "E0622").down(1),
+    row("add  = [\"fill\"]", "activate = [\"fill\"]", "stage.0.activate", "E0612"),
+    row("add  = [\"fill\"]", "activate = [\"plough\"]", "stage.0.activate", "E0624"),
     row("add  = [\"fill\"]", "activate = [\"pipe\"]", "rigid.1.start_velocity", "a stage applies it later, at rest")
         .down(47),
     row(
@@ -33,20 +33,14 @@ pub const STAGES: &[Row] = &[
         "factor = 1.25",
         "factor = 1.25\nstage = \"end\"\ndrainage = \"undrained\"",
         "strength_reduction.drainage",
-        "no water flows that could stay",
+        "E0637",
     )
     .down(2),
-    row("factor = 1.25", "factor = 1.25\nsteps = 5", "strength_reduction.steps", "no meaning without stage").down(1),
-    row(
-        "factor = 1.25",
-        "factor = 1.25\ndrainage = \"undrained\"",
-        "strength_reduction.drainage",
-        "no meaning without stage",
-    )
-    .down(1),
+    row("factor = 1.25", "factor = 1.25\nsteps = 5", "strength_reduction.steps", "E0631").down(1),
+    row("factor = 1.25", "factor = 1.25\ndrainage = \"undrained\"", "strength_reduction.drainage", "E0631").down(1),
     row("factor = 1.25", "factor = 1.25\nsteps = 1001", "strength_reduction.steps", "0 <= steps <= 1000").down(1),
-    row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
-    row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),
+    row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "E0621"),
+    row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "E0620"),
     row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "out of range"),
     row("name     = \"fill\"", "name = \"a b\"", "body.5.name", "expected a name"),
     row(
@@ -54,7 +48,7 @@ pub const STAGES: &[Row] = &[
         "[[body]]\nname = \"fill\"\nmaterial = \"clay\"\npoints_per_cell = 2\nbox = { lower = \
         [3.5, 2.7], upper = [3.8, 2.9] }\n[[stage]]\nname",
         "body.6.name",
-        "body.5 has that name",
+        "E0610",
     )
     .down(1),
 ];
