@@ -384,8 +384,8 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
         let names: Vec<String> = columns().map(|(_, column)| column.name).collect();
         let known = match nearest(quantity, names.iter().map(String::as_str)) {
             Some(near) => format!("did you mean `{near}`?"),
-            None if names.is_empty() => "there is none".to_owned(),
-            None => format!("there are {}", names.join(", ")),
+            None if names.is_empty() => "the case has none".to_owned(),
+            None => format!("columns: {}", names.join(", ")),
         };
         let message = format!(
             "E0660: no [[history]] has a column `{}` ({known}). Correct the name, or add a [[history]].",

@@ -199,8 +199,7 @@ pub const WITHOUT_FLOW: &[Row] = &[
         "water flows in real time",
     )
     .up(13),
-    row("[output]", "[[history]]\nquantity = \"water-balance\"\n[output]", "history.0.quantity", "no material is")
-        .down(1),
+    row("[output]", "[[history]]\nquantity = \"water-balance\"\n[output]", "history.0.quantity", "E0646").down(1),
     row("every = 0.5", "every = 0.5\nfields = [\"flux\"]", "output.fields", "no water flows").down(1),
 ];
 

@@ -318,10 +318,8 @@ pub const QUASI_STATIC: &[Row] = &[
         "column 1 of all 2 rows: found \"1 s\"; quasi-static time is a pseudo-time without unit: a number",
     )
     .down(2),
-    row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "there is no [footing]")
-        .down(1),
-    row("[output]", "[[history]]\nquantity = \"penetration\"\n[output]", "history.0.quantity", "there is no [footing]")
-        .down(1),
+    row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "E0646").down(1),
+    row("[output]", "[[history]]\nquantity = \"penetration\"\n[output]", "history.0.quantity", "E0646").down(1),
     row("[output]", "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 1\n[output]", "initial", "no body has any")
         .down(2),
 ];
@@ -362,14 +360,8 @@ pub const RUBBING: &[Row] = &[
         "a face that moves does not rub or let go",
     ),
     row("of = \"footing\"", "of = \"foting\"", "history.0.of", "did you mean `footing`?"),
-    row("of = \"footing\"", "", "history.0.of", "missing; quantity \"work\" needs it").up(2),
-    row("of = \"footing\"", "of = \"footing\"\nface = \"left\"", "history.0.face", "has no meaning").down(1),
-    row("quantity = \"work\"", "quantity = \"heave\"", "history.0.of", "has no meaning for quantity").down(1),
-    row(
-        "components = { friction_coefficient = 0.5 }",
-        "components = \"all\"",
-        "history.1.of",
-        "is about what rubs or lets go, and prescribed.0 holds",
-    )
-    .down(12),
+    row("of = \"footing\"", "", "history.0.of", "E0644").up(2),
+    row("of = \"footing\"", "of = \"footing\"\nface = \"left\"", "history.0.face", "E0642").down(1),
+    row("quantity = \"work\"", "quantity = \"heave\"", "history.0.of", "E0642").down(1),
+    row("components = { friction_coefficient = 0.5 }", "components = \"all\"", "history.1.of", "E0646").down(12),
 ];

@@ -270,7 +270,7 @@ pub const RULES: &[Row] = &[
     row("percentile = 99.9", "name = \"floor-x\"", "history.1.name", "E0610").down(5),
     row("percentile = 99.9", "name = \"time\"", "history.0.name", "E0610"),
     row("quantity = \"runout\"\nat", "quantity = \"runuot\"\nat", "check.0.quantity", "did you mean `runout`?"),
-    row("quantity = \"stress-yy\"", "quantity = \"stress\"", "check.1.quantity", "columns: runout, floor-x"),
+    row("quantity = \"stress-yy\"", "quantity = \"stress\"", "check.1.quantity", "E0660"),
     row("at       = \"0.5 s\"", "at = 2", "check.0.at", "E0663"),
     row("min      = 3.0", "min = 5.0", "check.0.min", "E0661"),
     row("max      = \"0 kPa\"", "", "check.1", "E0661").up(2),
@@ -327,7 +327,7 @@ pub const TOLD_QUASI_STATIC: &[Row] = &[row(
     "[output]",
     "[[profile]]\nname = \"a\"\nfrom = [0, 0]\nto = [1, 1]\ncount = 2\nquantities = [\"velocity\"]\n[output]",
     "profile.0.quantities",
-    "there is no velocity in a quasi-static analysis",
+    "E0645",
 )
 .down(5)];
 

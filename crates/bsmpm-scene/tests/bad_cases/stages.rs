@@ -59,7 +59,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3",
         "points_per_cell = 3\nname = \"all\"\n[[stage]]\nat = 0.5\nremove = [\"all\"]",
         "stage.0.remove",
-        "nothing is left after it",
+        "E0623",
     )
     .down(4),
     row(
@@ -75,14 +75,14 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3\n[[stage]]\nat = 0.5\nactivate = [\"lid\"]\n[[rigid]]\nname = \"lid\"\n\
          polygon = [[0, 1], [2, 1], [2, 2], [0, 2]]\n[[point_load]]\nname = \"lid\"\nat = [1.0, 0.5]\nforce = [0, -1]",
         "stage.0.activate",
-        "more than one of what a stage may apply is named \"lid\"",
+        "E0610",
     )
     .down(3),
     row(
         "points_per_cell = 3",
         "points_per_cell = 3\nname = \"all\"\n[[stage]]\nat = 0.5\nadd = [\"all\"]",
         "body",
-        "none is there at the start",
+        "E0623",
     )
     .up(3),
     row(
@@ -91,7 +91,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }\n[[stage]]\nat = 0.5\nremove = [\"top\"]\n\
          [[point_load]]\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0",
         "point_load.0.at",
-        "there is no one body as long as it acts",
+        "E0626",
     )
     .down(10),
     row(
@@ -99,7 +99,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
          [[stage]]\nat = 0.5\nactivate = [\"push\"]\ndeactivate = [\"push\"]",
         "stage.0.activate",
-        "push is released by this stage, too",
+        "E0618",
     )
     .down(8),
     row(
@@ -107,7 +107,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
          [[stage]]\nat = 0.5\nactivate = [\"push\"]\n[[stage]]\nat = 0.75\nactivate = [\"push\"]",
         "stage.1.activate",
-        "push acts already",
+        "E0619",
     )
     .down(11),
     row(
@@ -115,7 +115,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
          [[stage]]\nat = 0.5\ndeactivate = [\"push\"]\n[[stage]]\nat = 0.75\ndeactivate = [\"push\"]",
         "stage.1.deactivate",
-        "push does not act",
+        "E0619",
     )
     .down(11),
     row(
@@ -124,7 +124,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          [[stage]]\nat = 0.5\nreset_displacements = true\n\
          [[point_load]]\nname = \"push\"\nat = [0.5, 0.5]\nforce = [0, -1]",
         "point_load.1.name",
-        "point_load.0 has that name",
+        "E0610",
     )
     .down(10),
     row(
@@ -133,7 +133,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          [[stage]]\nat = 0.5\nmaterials = [{ from = \"heavy\", to = \"soil\" }]\n\
          [material.heavy]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3",
         "stage.0.materials.0.from",
-        "no body is made of material.heavy",
+        "E0613",
     )
     .down(8),
     row(
@@ -152,7 +152,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          [material.soft]\nmodel = \"modified-cam-clay\"\nkappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = 1\n\
          ocr = 1.5\nyoung = 1e6\npoisson = 0.3",
         "stage.0.materials.0.to",
-        "is not told by the stress",
+        "E0625",
     )
     .down(8),
     row(
@@ -167,7 +167,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "[output]",
         "[strength_reduction]\nfactor = 1.2\nstage = \"start\"\n[output]",
         "strength_reduction.stage",
-        "nothing has loaded the ground",
+        "E0634",
     )
     .down(2),
     row(
@@ -176,7 +176,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          reset_displacements = true\n[[stage]]\nat = 0.5\nreset_displacements = true\n\
          [[prescribed]]\nfrom = [0, 1]\nto = [2, 1]\npath = [[1.0, 0, -0.01]]\n[output]",
         "strength_reduction.stage",
-        "a strip still moves at the end",
+        "E0636",
     )
     .down(2),
     row(
@@ -184,7 +184,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\n[[point_load]]\nat = [1.0, 0.5]\nforce = [0, -1]\n\
          amplitude = [[2.0, 1.0]]\n[output]",
         "strength_reduction.stage",
-        "a load still changes at the end of that stage",
+        "E0636",
     )
     .down(2),
     row(
@@ -192,14 +192,14 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\n[[rigid]]\nname = \"block\"\nfree = [\"y\"]\n\
          polygon = [[0.5, 1], [1.5, 1], [1, 2]]\nforce = [0, -1]\nramp = 2.0\n[output]",
         "strength_reduction.stage",
-        "a load still changes at the end of that stage",
+        "E0636",
     )
     .down(2),
     row(
         "[output]",
         "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\n[[stage]]\nat = 0.5\nstrength_reduction = 1.1\n[output]",
         "strength_reduction.stage",
-        "stage.0 divides the strength, too",
+        "E0635",
     )
     .down(2),
     row(
@@ -208,7 +208,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          [material.soil]\nunit_weight = 2e4\nkappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = 1\nocr = 1.5\n\
          model = \"modified-cam-clay\"",
         "stage.0.strength_reduction",
-        "cannot be divided under the stress",
+        "E0630",
     )
     .down(6),
     row(
@@ -224,7 +224,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "[[stage]]\nat = 0.5\nboundary = { right = \"roller\" }\n[[history]]\nquantity = \"reaction\"\nface = \"right\"\n\
          name = \"held\"\n[[history]]\nquantity = \"reaction\"\nface = \"left\"\n[output]",
         "history.1.face",
-        "nothing is ever held at left",
+        "E0646",
     )
     .down(9),
 ];
