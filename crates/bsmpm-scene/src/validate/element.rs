@@ -43,7 +43,12 @@ fn read(
     let material = material(record, materials, report);
     let stages = record.records("stage");
     if record.gives("stage") && stages.is_empty() {
-        record.error("stage", "E0690: the test has no stage. Add at least one [[element.NAME.stage]].", report);
+        record.error(
+            "stage",
+            "E0690: the test has no stage. Add for example stage = [{ test = \"triaxial\", \
+                               compression = 0.05 }].",
+            report,
+        );
     }
     let mut undrained = false;
     let mut read = Vec::with_capacity(stages.len());

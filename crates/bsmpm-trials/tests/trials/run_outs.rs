@@ -113,7 +113,10 @@ fn the_choice_for_flow_is_noted_and_refused_without_inertia() {
     let scratch = Scratch::with_case(DAM_BREAK);
     let noted = scratch.direct(&["case.toml", "--check"]).expect(0);
     let said = noted.said();
-    assert!(said.contains("analysis.wall_velocity") && !said.contains("quantity = \"runout\" with percentile"), "{said}");
+    assert!(
+        said.contains("analysis.wall_velocity") && !said.contains("quantity = \"runout\" with percentile"),
+        "{said}"
+    );
     scratch.write("front.toml", changed(DAM_BREAK, "percentile = 99\n", ""));
     let front = scratch.direct(&["front.toml", "--check"]).expect(0).said();
     assert!(front.contains("quantity = \"runout\" with percentile"), "{front}");

@@ -369,8 +369,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
         if !record.gives("fit") {
             report.warn(format!(
-                "W0310: {}: the default cone is made for plane strain; here it has {:.1} % of the Mohr-Coulomb \
-                 strength in triaxial compression, {:.1} % in extension. Use fit = \"outer\" or \"inner\".",
+                "W0310: {}: the default cone is for plane strain and has only {:.1} % of the Mohr-Coulomb strength in \
+                 compression, {:.1} % in extension. Use fit = \"outer\" or \"inner\".",
                 record.path_of("fit"),
                 100.0 * cone.strength_over(Match::Outer),
                 100.0 * cone.strength_over(Match::Inner)
