@@ -274,7 +274,7 @@ fn thin_walls_are_warned_of() {
         let wall = format!("polygon = [[{inner}, 1.0], [{outer}, 1.0], [{outer}, 2.0], [{inner}, 2.0]]");
         let text = format!("{}revolve = {{ {wall}, about = [1.0, 1.5] }}\n{}", &base[..at], &base[end..]);
         let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
-        warnings.iter().any(|told| told.starts_with("body.3") && told.contains(of))
+        warnings.iter().any(|warning| warning.starts_with("body.3") && warning.contains(of))
     };
     let (factor, alone) = ("it is too thin for its points", "where one point stands for all");
     assert!(warned([0.8, 0.803], factor) && !warned([0.8, 0.95], factor));
@@ -288,13 +288,13 @@ fn the_default_match_of_a_cone_is_warned_of_outside_of_plane_strain() {
         let law = format!("model = \"drucker-prager\"\nfriction_angle = 30\ncohesion = 1e3{given}\n");
         let text = base.replacen("model   = \"elastic\"", &law, 1);
         let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
-        warnings.into_iter().find(|told| ["W0310", "W0311"].iter().any(|code| told.starts_with(code)))
+        warnings.into_iter().find(|warning| ["W0310", "W0311"].iter().any(|code| warning.starts_with(code)))
     };
     for base in [super::SOLID, super::ROUND] {
-        let told = warned(base, "").expect("a warning");
+        let reported = warned(base, "").expect("a warning");
         // (3 - sin 30)/sqrt(13) and (3 + sin 30)/sqrt(13).
-        assert!(told.starts_with("W0310: material.soil.fit: ") && told.contains("69.3 %"), "{told}");
-        assert!(told.contains("97.1 % in extension") && told.contains("fit = \"outer\""), "{told}");
+        assert!(reported.starts_with("W0310: material.soil.fit: ") && reported.contains("69.3 %"), "{reported}");
+        assert!(reported.contains("97.1 % in extension") && reported.contains("fit = \"outer\""), "{reported}");
         for word in ["outer", "inner", "plane-strain"] {
             assert_eq!(warned(base, &format!("\nmatch = \"{word}\"")), None);
         }
@@ -303,7 +303,7 @@ fn the_default_match_of_a_cone_is_warned_of_outside_of_plane_strain() {
     assert!(flat.starts_with("W0311: material.soil: "), "{flat}");
 }
 
-/// Every triangle of the surface turned; of one that is not the row of open surfaces tells.
+/// Every triangle of the surface turned; of one that is not the row of open surfaces reports.
 #[test]
 fn a_surface_that_is_turned_inside_out_as_a_whole_is_taken_and_warned_of() {
     let base = super::SOLID;
@@ -313,7 +313,8 @@ fn a_surface_that_is_turned_inside_out_as_a_whole_is_taken_and_warned_of() {
         .replacen("[7, 3, 4, 5, 5, 4, 5, 3, 6]", "[7, 3, 4, 5, 3, 6, 5, 5, 4]", 1)
         .replacen("[5, 3, 4, 5, 3, 6, 5, 5, 4]", "[5, 3, 4, 5, 5, 4, 5, 3, 6]", 1);
     let case = |text: &str| bsmpm_scene::Case::from_text("case.toml", text, &[]).expect("a valid case");
-    let warned = |text: &str| case(text).warnings.iter().any(|told| told.contains("triangles: all of them are turned"));
+    let warned =
+        |text: &str| case(text).warnings.iter().any(|warning| warning.contains("triangles: all of them are turned"));
     assert!(warned(&turned) && !warned(base));
     assert_eq!(case(&turned).bodies[5].region, case(base).bodies[5].region);
 }
