@@ -189,10 +189,10 @@ density = 1800
     let starred = numbers(clay("kappa_star = 0.016\nlambda_star = 0.08").unwrap());
     assert!(textbook.iter().zip(&starred).all(|(a, b)| (a - b).abs() <= 1e-15 * b.abs()), "{textbook:?} {starred:?}");
     let message = clay("kappa = 0.04\nlambda = 0.2").unwrap_err();
-    for part in ["material.clay.kappa", "Give void_ratio", "or kappa_star and lambda_star"] {
+    for part in ["material.clay.kappa", "E0314", "Add `void_ratio`", "`kappa_star` = kappa/(1 + e0)"] {
         assert!(message.contains(part), "{part}: {message}");
     }
-    assert!(clay("kappa_star = 0.04").unwrap_err().contains("needs it, or lambda and void_ratio"));
+    assert!(clay("kappa_star = 0.04").unwrap_err().contains("Add `lambda_star`, or `lambda` and `void_ratio`"));
     // The text of a run that was made before had the starred slopes by these names.
     let before = format!("{CLAY}kappa = 0.016\nlambda = 0.08");
     let now = format!("{CLAY}kappa_star = 0.016\nlambda_star = 0.08");

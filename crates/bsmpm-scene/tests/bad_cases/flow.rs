@@ -108,7 +108,7 @@ pub const FLOW: &[Row] = &[
     // Histories.
     row("drain    = \"base\"", "drain = \"bas\"", "history.1.drain", "did you mean `base`?"),
     row("face     = \"bottom\"\nname", "face = \"top\"\nname", "history.2.face", "there is no such [[drain]]"),
-    row("quantity = \"water-balance\"", "quantity = \"flux\"", "history.3.at", "missing").up(1),
+    row("quantity = \"water-balance\"", "quantity = \"flux\"", "history.3.at", "E0644").up(1),
     // What acts.
     row("right  = \"roller\"", "right = \"contact\"", "boundary.right", "faces in contact are not shown"),
     row("right  = \"roller\"", "right = \"outflow\"", "boundary.right", "\"outflow\" is not shown"),
@@ -124,7 +124,7 @@ pub const FLOW: &[Row] = &[
         "[solver]",
         "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\nstiffness = 3\n[solver]",
         "strength_reduction.stiffness",
-        "it would hold from the first step on",
+        "E0638",
     )
     .down(3),
     row("dt     = \"1 h\"", "dt     = 0.1", "analysis.dt", "6.312e9 steps until the end (at most 1e9)"),
@@ -155,14 +155,14 @@ pub const FLOW: &[Row] = &[
         "[solver]",
         "[[stage]]\nat = \"1 day\"\nactivate = [\"rai\"]\n[solver]",
         "stage.0.activate",
-        "[[drain]], [[inflow]] or [footing] with name = \"rai\"; did you mean `rain`?",
+        "E0612",
     )
     .down(2),
     row(
         "[solver]",
         "[[stage]]\nat = \"1 day\"\ndeactivate = [\"base\"]\n[[stage]]\nat = \"2 day\"\ndeactivate = [\"base\"]\n[solver]",
         "stage.1.deactivate",
-        "base does not act, by a stage before",
+        "E0619",
     )
     .down(5),
     row(
@@ -199,8 +199,7 @@ pub const WITHOUT_FLOW: &[Row] = &[
         "water flows in real time",
     )
     .up(13),
-    row("[output]", "[[history]]\nquantity = \"water-balance\"\n[output]", "history.0.quantity", "no material is")
-        .down(1),
+    row("[output]", "[[history]]\nquantity = \"water-balance\"\n[output]", "history.0.quantity", "E0646").down(1),
     row("every = 0.5", "every = 0.5\nfields = [\"flux\"]", "output.fields", "no water flows").down(1),
 ];
 

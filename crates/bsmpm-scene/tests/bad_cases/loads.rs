@@ -84,21 +84,11 @@ pub const LAYERS: &[Row] = &[
     row("\"2 MPa/m\"", "\"2e30 MPa/m\"", "material.till.young.per_metre", "is out of range"),
     row("at_y = 3, per_metre = 500", "per_metre = 500", "material.till.cohesion.at_y", "missing"),
     row("at_y = 3, per_metre", "y = 3, per_metre", "material.till.cohesion.y", "unknown key `y`"),
-    row(
-        "per_metre = \"2 MPa/m\"",
-        "per_metre = \"-7 MPa/m\"",
-        "material.till.young",
-        "y = 1.5, and bodies of this material reach there; allowed: young > 0",
-    ),
+    row("per_metre = \"2 MPa/m\"", "per_metre = \"-7 MPa/m\"", "material.till.young", "E0303"),
     row("value = \"1 kPa\", at_y = 3", "value = 0, at_y = 2", "material.till.cohesion", "is -250 at y = 2.5"),
     row("value = 30, at_y", "value = 89.5, at_y", "material.till.friction_angle", "is 90.25 at y = 1.5"),
     row("value = 30, at_y", "value = -0.4, at_y", "material.till.friction_angle", "is -0.15"),
-    row(
-        "dilation_angle    = 0\n",
-        "dilation_angle = 31\n",
-        "material.till.dilation_angle",
-        "<= friction_angle = 30.75",
-    ),
+    row("dilation_angle    = 0\n", "dilation_angle = 31\n", "material.till.dilation_angle", "E0308"),
     row(
         "poisson     = 0.2",
         "poisson = { value = 0.2, at_y = 0, per_metre = 0 }",
@@ -282,20 +272,14 @@ pub const INITIAL: &[Row] = &[
         "history.4.box",
         "outside the grid",
     ),
-    row(
-        "quantity = \"pressure-noise\"",
-        "quantity = \"front\"\nname = \"h\"",
-        "history.4.box",
-        "no meaning for quantity \"front\"",
-    )
-    .down(2),
+    row("quantity = \"pressure-noise\"", "quantity = \"front\"\nname = \"h\"", "history.4.box", "E0642").down(2),
     row(
         "quantity = \"footing-pressure\"",
         "quantity = \"footing-presure\"",
         "history.3.quantity",
         "did you mean `footing-pressure`?",
     ),
-    row("max      = \"0 kPa\"", "max = \"0 kN/m\"", "check.1.max", "takes a stress"),
+    row("max      = \"0 kPa\"", "max = \"0 kN/m\"", "check.1.max", "E0665"),
 ];
 
 /// Quasi-static cases.
@@ -321,10 +305,8 @@ pub const QUASI_STATIC: &[Row] = &[
         "column 1 of all 2 rows: found \"1 s\"; quasi-static time is a pseudo-time without unit: a number",
     )
     .down(2),
-    row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "there is no [footing]")
-        .down(1),
-    row("[output]", "[[history]]\nquantity = \"penetration\"\n[output]", "history.0.quantity", "there is no [footing]")
-        .down(1),
+    row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "E0646").down(1),
+    row("[output]", "[[history]]\nquantity = \"penetration\"\n[output]", "history.0.quantity", "E0646").down(1),
     row("[output]", "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 1\n[output]", "initial", "no body has any")
         .down(2),
 ];
@@ -360,14 +342,8 @@ pub const RUBBING: &[Row] = &[
         "E0418",
     ),
     row("of = \"footing\"", "of = \"foting\"", "history.0.of", "did you mean `footing`?"),
-    row("of = \"footing\"", "", "history.0.of", "missing; quantity \"work\" needs it").up(2),
-    row("of = \"footing\"", "of = \"footing\"\nface = \"left\"", "history.0.face", "has no meaning").down(1),
-    row("quantity = \"work\"", "quantity = \"heave\"", "history.0.of", "has no meaning for quantity").down(1),
-    row(
-        "components = { friction_coefficient = 0.5 }",
-        "components = \"all\"",
-        "history.1.of",
-        "is about what rubs or lets go, and prescribed.0 holds",
-    )
-    .down(12),
+    row("of = \"footing\"", "", "history.0.of", "E0644").up(2),
+    row("of = \"footing\"", "of = \"footing\"\nface = \"left\"", "history.0.face", "E0642").down(1),
+    row("quantity = \"work\"", "quantity = \"heave\"", "history.0.of", "E0642").down(1),
+    row("components = { friction_coefficient = 0.5 }", "components = \"all\"", "history.1.of", "E0646").down(12),
 ];

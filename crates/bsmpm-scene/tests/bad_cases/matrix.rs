@@ -77,7 +77,7 @@ const MATRIX: &[Input] = &[
             row(POISSON, "poisson = -1.5", "material.sand.poisson", "-1.5 is out of range"),
         ],
         taken: &[
-            (POISSON, "poisson = 0.49995", "material.sand: poisson = 0.49995 is nearly incompressible"),
+            (POISSON, "poisson = 0.49995", "W0303: material.sand: poisson = 0.49995"),
             (POISSON, "poisson = 0.499", "water.bulk = 1.66"),
             (POISSON, "poisson = 0.4989", ""),
             (POISSON, "poisson = -0.99", ""),
@@ -99,21 +99,12 @@ const MATRIX: &[Input] = &[
                 "material.sand.friction_angle",
                 "90 is out of range; allowed: 0 <= friction_angle < 90",
             ),
-            row(
-                "dilation_angle = 5",
-                "dilation_angle = 30.1",
-                "material.sand.dilation_angle",
-                "30.1 is out of range; allowed: 0 <= dilation_angle <= friction_angle = 30",
-            ),
+            row("dilation_angle = 5", "dilation_angle = 30.1", "material.sand.dilation_angle", "E0308"),
             row("dilation_angle = 5", "dilation_angle = -1", "material.sand.dilation_angle", "-1 is out of range"),
             row("\"1 kPa\"", "\"-1 kPa\"", "material.sand.cohesion", "allowed: cohesion >= 0"),
         ],
         taken: &[
-            (
-                "cohesion    = 2e4",
-                "cohesion = 0",
-                "material.clay: friction and cohesion are both 0: the material has no strength",
-            ),
+            ("cohesion    = 2e4", "cohesion = 0", "W0309: material.clay: "),
             ("cohesion = \"1 kPa\"", "cohesion = 0", ""),
         ],
         ..NONE
@@ -246,23 +237,22 @@ const MATRIX: &[Input] = &[
             row("dt   = \"10 ms\"", "steps = 1_000_000_000_000", "analysis.steps", "1000000000000 is out of range"),
             row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps until the end (at most 1e9)"),
             row("every  = \"0.1 s\"", "every = 0", "output.every", "0 is out of range; allowed: every > 0"),
-            row("times  = [\"0.25 s\", 0.75]", "times = [1e-9]", "output.times", "allowed: at least 1e-6 dt"),
-            row("at       = \"0.5 s\"", "at = 1e-9", "check.0.at", "allowed: at least 1e-6 dt"),
+            row("times  = [\"0.25 s\", 0.75]", "times = [1e-9]", "output.times", "E0664"),
+            row("at       = \"0.5 s\"", "at = 1e-9", "check.0.at", "E0664"),
         ],
         taken: &[
             ("dt   = \"10 ms\"", "steps = 1", ""),
-            ("every  = \"0.1 s\"", "every = 3", "output.every: 3 is beyond the end"),
-            ("[\"1 s\", \"-0.1 g\"", "[\"3 s\", \"-0.1 g\"", "W0403: shaking.acceleration: the row at t = 3"),
+            ("every  = \"0.1 s\"", "every = 3", "W0661: output.every: "),
             (
                 "[\"1 s\", \"-0.1 g\"",
                 "[\"2 ms\", \"-0.1 g\"",
                 "W0404: shaking.acceleration: rows are 0.002 apart in time, but a step is 0.01",
             ),
             ("[\"1 s\", \"-0.1 g\"", "[\"2 ms\", \"-0.1 g\"", "rows are 0.002 apart and steps 0.01"),
-            ("bottom = \"fixed\"", "bottom = { friction_coefficient = 1.5 }", "W0204"),
-            ("bottom = \"fixed\"", "bottom = \"contact\"", "thrown back with energy that it did not have"),
-            ("ramp = \"0.5 s\"", "amplitude = [[2, 1]]", "W0403: traction.0.amplitude: the row at t = 2"),
-            ("ramp = \"0.5 s\"", "amplitude = [[0, 1]]", "W0405: traction.0: "),
+            ("bottom = \"fixed\"", "bottom = { friction_coefficient = 1.5 }", "shown to be right up to 1"),
+            ("bottom = \"fixed\"", "bottom = \"contact\"", "W0671: analysis.dt: "),
+            ("ramp = \"0.5 s\"", "amplitude = [[2, 1]]", "traction.0.amplitude: the row at t = 2 is beyond the end"),
+            ("ramp = \"0.5 s\"", "amplitude = [[0, 1]]", "traction.0: acts in full from time 0"),
         ],
         ..NONE
     },
@@ -323,8 +313,8 @@ const MATRIX: &[Input] = &[
         )
         .down(1)],
         taken: &[
-            (YOUNG, "20", "material.sand: young = 2e1 Pa = 2e-2 kPa is unusual: check the unit"),
-            (YOUNG, "\"20000 GPa\"", "check the unit"),
+            (YOUNG, "20", "W0302: material.sand: Young's modulus is 0.02 kPa"),
+            (YOUNG, "\"20000 GPa\"", "W0302: material.sand: "),
             (
                 "\"18 kN/m3\"",
                 "18",
@@ -340,48 +330,36 @@ const MATRIX: &[Input] = &[
                 "material = \"sand\"\npressure",
                 "material = \"snad\"\npressure",
                 "element.consolidated.material",
-                "there is no material `snad`; did you mean `sand`?",
+                "E0612",
             ),
-            row(
-                "material = \"sand\"\npressure",
-                "pressure",
-                "element.consolidated.material",
-                "missing; there are 4 materials",
-            )
-            .up(1),
-            row(
-                "height = \"2 m\"\n",
-                "",
-                "element.mixed.height",
-                "missing; parameters of material.till depend on the height",
-            )
-            .up(2),
+            row("material = \"sand\"\npressure", "pressure", "element.consolidated.material", "E0693").up(1),
+            row("height = \"2 m\"\n", "", "element.mixed.height", "E0692").up(2),
             row(
                 "{ test = \"isotropic\", pressure = \"100 kPa\", steps = 10 }",
                 "{ test = \"isotropic\", shear = 0.1 }",
                 "element.consolidated.stage.0.shear",
-                "has no meaning in test \"isotropic\"",
+                "E0694",
             ),
             row(
                 "{ test = \"isotropic\", pressure = \"100 kPa\", steps = 10 }",
                 "{ test = \"isotropic\" }",
                 "element.consolidated.stage.0",
-                "missing: compression or pressure (test \"isotropic\")",
+                "E0694",
             ),
             row(
                 "{ test = \"isotropic\", pressure",
                 "{ test = \"isotropic\", undrained = true, pressure",
                 "element.consolidated.stage.0.undrained",
-                "nothing can move without drainage",
+                "E0695",
             ),
             row(
                 "duration = \"1 h\" },",
                 "duration = \"1 h\" },\n    { test = \"oedometer\", compression = 0.1 },",
                 "element.consolidated.stage.2",
-                "a drained stage after an undrained one",
+                "E0691",
             )
             .down(1),
-            row("strain_yy = -0.01\n", "", "element.mixed.stage.0", "missing: strain_yy or stress_yy").up(3),
+            row("strain_yy = -0.01\n", "", "element.mixed.stage.0", "E0694").up(3),
             row(
                 "strain_yy = -0.01\n",
                 "strain_yy = -0.01\nstress_yy = 0\n",

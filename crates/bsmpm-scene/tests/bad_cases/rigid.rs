@@ -44,18 +44,19 @@ pub const RIGID: &[Row] = &[
         .down(1),
     row(WEIGHED, FREE, "rigid.1.free", "E0427"),
     row(INERTIA, "inertia = 0\n", "rigid.1.inertia", "allowed: inertia > 0"),
-    row("friction_coefficient = 0.4\n", "friction_coefficient = 0.4\nmass = 5\n", "rigid.0.mass", "E0426").down(1),
     row(
-        "rigid    = \"pipe\"",
-        "rigid    = \"pip\"",
-        "history.10.rigid",
-        "there is no rigid body `pip`; did you mean `pipe`",
-    ),
+        "friction_coefficient = 0.4\n",
+        "friction_coefficient = 0.4\nmass = 5\n",
+        "rigid.0.mass",
+        "no motion is `free`",
+    )
+    .down(1),
+    row("rigid    = \"pipe\"", "rigid    = \"pip\"", "history.10.rigid", "E0612"),
     row(
         "[[history]]\nquantity = \"rigid-force\"\nrigid    = \"pipe\"",
         "[[history]]\nquantity = \"rigid-force\"",
         "history.10.rigid",
-        "missing; quantity \"rigid-force\" needs it",
+        "E0644",
     ),
-    row("quantity = \"heave\"", "quantity = \"heave\"\nrigid = \"pipe\"", "history.5.rigid", "has no meaning").down(1),
+    row("quantity = \"heave\"", "quantity = \"heave\"\nrigid = \"pipe\"", "history.5.rigid", "E0642").down(1),
 ];

@@ -24,7 +24,7 @@ pub const WATER: &[Row] = &[
     row(LEVEL, "level = 0.75\nru = 0.3", "water.ru", "unknown key").down(1),
     row(GRAVITY, "", "water", "weighs nothing without [gravity]").down(1),
     row("-9.81]", "9.81]", "gravity.acceleration", "is not straight down, which still water needs"),
-    row(SATURATED, "saturated_unit_weight = \"18 kN/m3\"", SATURATED_KEY, "is lighter than above the water"),
+    row(SATURATED, "saturated_unit_weight = \"18 kN/m3\"", SATURATED_KEY, "E0309"),
     row(
         "unit_weight = \"19 kN/m3\"\nsaturated_unit_weight = \"20 kN/m3\"",
         "unit_weight = \"8 kN/m3\"\nsaturated_unit_weight = \"9 kN/m3\"",
@@ -32,14 +32,13 @@ pub const WATER: &[Row] = &[
         "is lighter than water, 9.81",
     )
     .down(1),
-    row("unit_weight = \"19 kN/m3\"\n", "", SATURATED_KEY, "give unit_weight or density, too"),
+    row("unit_weight = \"19 kN/m3\"\n", "", SATURATED_KEY, "E0310"),
     row("[water]\nlevel = 0.75\n", "", SATURATED_KEY, "has no meaning without [water]").up(16),
-    row("at       = [1.0, 0.5]", "", "history.0.at", "missing; quantity \"pore-pressure\" needs it").up(2),
+    row("at       = [1.0, 0.5]", "", "history.0.at", "E0644").up(2),
 ];
 /// Pressure that points carry, beside other water.
 pub const RATIO_AND_WATER: &[Row] = &[
-    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "[water] gives the pore pressure, too")
-        .down(1),
+    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "E0320").down(1),
     row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 1.0", RU, "allowed: 0 < ru < 1").down(1),
     row("[water]\nlevel = 0.75\n", "[water]\nlevel = 0.75\nru = 0.3\n", "water.ru", "unknown key").down(2),
 ];

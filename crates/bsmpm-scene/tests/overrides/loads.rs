@@ -43,7 +43,7 @@ fn what_lies_on_the_ground_has_no_part_in_the_stress_at_the_start() {
     let above = ["footing.from=[1, 2]", "footing.to=[2, 2]"];
     assert!(!valid(FULL, &above).footing.unwrap().rests);
     let hangs = doubts(FULL, &["initial.equilibrium=plastic"]);
-    assert!(hangs.iter().any(|warning| warning.contains("prescribed.1: it lies on the ground")), "{hangs:?}");
+    assert!(hangs.iter().any(|warning| warning.starts_with("W0672: prescribed.1: ")), "{hangs:?}");
 }
 
 #[test]

@@ -211,7 +211,7 @@ fn the_background_is_a_ten_thousandth_at_rest_unless_the_case_wants_another() {
     }
     assert_eq!(coefficient(STATIC, &["solver.background=0.5"]), 0.5);
     let warnings = |set: &[&str]| valid(STATIC, set).warnings.join("\n");
-    assert!(warnings(&["solver.background=1e-3"]).contains("solver.background: 1e-3 is above 1e-4"));
+    assert!(warnings(&["solver.background=1e-3"]).contains("(1e-3) is above 1e-4"));
     assert!(!warnings(&["solver.background=1e-4"]).contains("solver.background"));
     assert_eq!(coefficient(&FULL.replace("background       = 0.0\n", ""), &[]), 0.0);
 }
@@ -284,9 +284,9 @@ fn points_weigh_fitted_volumes_where_unlike_materials_meet_on_a_c0_line() {
     assert_eq!(valid(STATIC, &[fitted]).solver.quadrature, Quadrature::Fitted);
     assert_eq!(valid(FULL, &["solver.quadrature=points"]).solver.quadrature, Quadrature::Points);
     let errors = set(STATIC, &["grid.degree=cubic", fitted]).unwrap_err();
-    assert!(errors.len() == 1 && errors[0].message.contains("linear and quadratic"), "{errors:?}");
+    assert!(errors.len() == 1 && errors[0].message.contains("cubic splines"), "{errors:?}");
     let errors = set(FULL, &[fitted]).unwrap_err();
-    assert!(errors.len() == 1 && errors[0].message.contains("quasi-static analysis"), "{errors:?}");
+    assert!(errors.len() == 1 && errors[0].message.contains("dynamics"), "{errors:?}");
 }
 
 /// Twelve million unknowns.
@@ -320,12 +320,12 @@ fn the_linear_solver_that_is_left_open_is_chosen_by_size_and_explained() {
         assert!(errors.len() == 1 && errors[0].message.contains(why), "{errors:?}");
     }
     let (found, reason) = chosen(&[]);
-    assert!(found == direct && reason.is_some_and(|reason| reason.contains("costs least")));
+    assert!(found == direct && reason.is_some_and(|reason| reason.contains("a direct solver is fastest")));
     let (found, reason) = chosen(&[LARGE]);
-    assert!(found == direct && reason.is_some_and(|reason| reason.contains("repeat to the bit")));
+    assert!(found == direct && reason.is_some_and(|reason| reason.contains("bitwise reproducible")));
     let any = "solver.reproducible=false";
     let (found, reason) = chosen(&[LARGE, any]);
-    assert!(found == (Ksp::Cg, Pc::Gamg, None) && reason.is_some_and(|reason| reason.contains("more than 10000000")));
+    assert!(found == (Ksp::Cg, Pc::Gamg, None) && reason.is_some_and(|reason| reason.contains("above 10000000")));
     let (found, reason) = chosen(&[LARGE, any, "material.soil.poisson=0.46"]);
     assert!(found == direct && reason.is_some_and(|reason| reason.contains("Poisson")));
     assert_eq!(chosen(&[LARGE, any, "solver.linear.ksp=preonly"]).0, direct);
@@ -360,28 +360,28 @@ fn free_faces_move_outward() {
 #[test]
 fn doubtful_cases_are_warned_of() {
     let rows = [
-        (FULL, "gravity.acceleration=[0, -9.8]", "W0205"),
-        (FULL, "material.sand.young=500", "young = 5e2 Pa"),
-        (FULL, "material.sand.young=2e13", "check the unit"),
-        (FULL, "material.clay.poisson=0.49999", "nearly incompressible"),
-        (FULL, "material.clay.cohesion=0", "no strength"),
+        (FULL, "gravity.acceleration=[0, -9.8]", "near 9.81"),
+        (FULL, "material.sand.young=500", "W0302: material.sand: "),
+        (FULL, "material.sand.young=2e13", "W0302"),
+        (FULL, "material.clay.poisson=0.49999", "W0303: material.clay: poisson = 0.49999"),
+        (FULL, "material.clay.cohesion=0", "W0309"),
         (FULL, "material.clay.unit_weight=18", "check the unit"),
-        (FULL, "body.0.points_per_cell=1", "W0210"),
-        (FULL, "body.1.box.lower.1=0.9", "W0213: body.0 and body.1 overlap"),
-        (FULL, "body.1.material=sand", "material.clay: no body"),
-        (STATIC, "gravity={acceleration=[0, -9.81], ramp=5}", "W0207"),
+        (FULL, "body.0.points_per_cell=1", "too coarsely"),
+        (FULL, "body.1.box.lower.1=0.9", "body.0 and body.1 overlap"),
+        (FULL, "body.1.material=sand", "W0313: material.clay: "),
+        (STATIC, "gravity={acceleration=[0, -9.81], ramp=5}", "never fully applied"),
         (FULL, "traction.0.ramp=5", "never acts in full"),
         (FULL, "traction.0.ramp=0", "traction.0: acts in full from time 0"),
         (FULL, "point_load.0.ramp=0", "point_load.0: acts in full from time 0"),
         (FULL, "prescribed.1.path.1.0=2", "prescribed.1.path: the row at t = 2 is beyond the end"),
-        (FULL, "material.till.dilation_angle=30.5", "above the friction angle in places"),
+        (FULL, "material.till.dilation_angle=30.5", "W0308: material.till.dilation_angle: "),
         (FULL, "body.3.polygon=[[2.5, 1.0], [3.75, 1.0], [3, 2.5], [2.5, 2.5]]", "overlap"),
-        (STATIC, "strength_reduction.factor=2", "no material has strength"),
-        (FULL, "output.every=5", "beyond the end"),
-        (STATIC, "material.soil.poisson=0.46", "expect locking"),
-        (STATIC, "gravity.acceleration=[0, -9.81]", "no body has mass"),
-        (STATIC, "title=x", "nothing loads"),
-        (STATIC, "solver.linear={ksp=\"cg\", pc=\"jacobi\", factor=\"mumps\"}", "is not used"),
+        (STATIC, "strength_reduction.factor=2", "W0601"),
+        (FULL, "output.every=5", "W0661"),
+        (STATIC, "material.soil.poisson=0.46", "W0315"),
+        (STATIC, "gravity.acceleration=[0, -9.81]", "W0314"),
+        (STATIC, "title=x", "W0674"),
+        (STATIC, "solver.linear={ksp=\"cg\", pc=\"jacobi\", factor=\"mumps\"}", "W0603"),
     ];
     for (text, change, says) in rows {
         let warnings = valid(text, &[change]).warnings;
@@ -395,7 +395,9 @@ fn doubtful_cases_are_warned_of() {
     let ring = ["grid.degree=cubic", "body.0.box.lower=[0.25, 0.0]", "point_load.0.at=[0.5, 1.0]"];
     assert!(at_axis(&ring[..1]) && !at_axis(&ring) && !at_axis(&[]));
     let plastic = FULL.replace("[stabilisation]\nmethod = \"f-bar\"", "");
-    assert!(valid(&plastic, &[]).warnings.iter().any(|warning| warning.contains("material.sand is plastic")));
+    assert!(
+        valid(&plastic, &[]).warnings.iter().any(|warning| warning.starts_with("W0315: stabilisation: material.sand"))
+    );
 }
 
 /// A drain above the water table is a pond where the ground takes in what a step brings.
