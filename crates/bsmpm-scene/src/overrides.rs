@@ -147,7 +147,8 @@ impl<'a> Setting<'a> {
                 })?;
                 if index > length {
                     return Err(format!(
-                        "E0026: the list has no item {index}: it has {length} items, numbered from 0. Use {length} to add one."
+                        "E0026: the list has no item {index}: it has {length} items, numbered from 0. Use {length} to \
+                         add one."
                     ));
                 }
                 if index == length {

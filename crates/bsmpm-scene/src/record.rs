@@ -222,20 +222,20 @@ impl Context {
         if let Some(answer) = answer(table, key) {
             return match code_of(answer) {
                 Some(_) => answer.to_owned(),
-                None => format!("E0011: unknown key `{}` in {}. {answer}", shortened(key), table.header),
+                None => format!("E0011: the key `{}` does not exist in {}. {answer}", shortened(key), table.header),
             };
         }
         let names = || table.keys.iter().filter(|key| key.presence != Presence::Retired).map(|key| key.name);
         let elsewhere = || self.root.all().into_iter().find(|other| other.key(key).is_some());
         let hint = match (nearest(key, names()), elsewhere()) {
             (Some(name), _) => format!("; did you mean `{name}`?"),
-            (None, Some(other)) => format!("; `{key}` belongs to {}", other.header),
+            (None, Some(other)) => format!("; it belongs to {}", other.header),
             (None, None) => String::new(),
         };
         let known: Vec<&str> = names().collect();
         let end = if hint.ends_with('?') { "" } else { "." };
         format!(
-            "E0011: unknown key `{}` in {}{hint}{end} Known keys: {}.",
+            "E0011: the key `{}` does not exist in {}{hint}{end} Known keys: {}.",
             shortened(key),
             table.header,
             known.join(", ")

@@ -178,7 +178,8 @@ impl Outline {
         let columns = outline.columns(grid).len();
         if columns > MOST_COLUMNS {
             return Err(format!(
-                "E0036: the shape spans {columns} columns of cells, but at most {MOST_COLUMNS} are possible. Use larger cells."
+                "E0036: the shape spans {columns} columns of cells, but at most {MOST_COLUMNS} are possible. Use \
+                 larger cells."
             ));
         }
         outline.count(grid, points_per_cell);
@@ -250,8 +251,8 @@ fn reached(axis: &GridAxis, [lower, upper]: [f64; 2]) -> Range<usize> {
 fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result<(), String> {
     if edges.len() > MOST_EDGES {
         return Err(format!(
-            "E0036: the shape has {} edges with those that are cut out, but at most {MOST_EDGES} are possible. Use fewer \
-             corners.",
+            "E0036: the shape has {} edges with those that are cut out, but at most {MOST_EDGES} are possible. Use \
+             fewer corners.",
             edges.len()
         ));
     }

@@ -28,8 +28,8 @@ pub fn load(path: &Path) -> io::Result<Vec<u8>> {
     let whole = rows::inlined(text, path.parent().unwrap_or(Path::new(""))).map(String::into_bytes)?;
     if whole.len() > MAX_BYTES {
         let message = format!(
-            "E0004: the case and the rows of its data files have more than {MAX_BYTES} bytes, the limit. Reduce the number \
-             of rows."
+            "E0004: the case and the rows of its data files have more than {MAX_BYTES} bytes, the limit. Reduce the \
+             number of rows."
         );
         return Err(io::Error::new(io::ErrorKind::InvalidData, message));
     }

@@ -210,18 +210,14 @@ pub fn parse(text: &str, expected: Dimension) -> Result<f64, String> {
         return Ok(value);
     }
     let unit = split(text).map_or("", |(_, unit)| unit);
-    Err(match expected {
-        Dimension::LineForce if found == Dimension::Force => {
-            format!(
-                "E0021: `{unit}` is a unit of force, but plane strain considers 1 m of thickness. Give a force per metre ({}).",
-                list(expected)
-            )
-        }
-        Dimension::Number => {
-            format!("E0021: `{unit}` is a unit of {}, but this key takes a number without unit.", noun(found))
-        }
-        _ => format!("E0021: `{unit}` is a unit of {}; expected {expected} ({}).", noun(found), list(expected)),
-    })
+    let units = match expected {
+        Dimension::Number => String::new(),
+        _ => format!(" ({})", list(expected)),
+    };
+    Err(format!(
+        "E0021: the value has the wrong unit: expected {expected}{units}, found `{unit}`, a unit of {}.",
+        noun(found)
+    ))
 }
 
 /// Value of `text`, a number followed by a unit of the dimension `of` and `/m`, e.g. `"2 kPa/m"`, in SI.
@@ -247,8 +243,8 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
     };
     if unit.is_empty() {
         return Err(format!(
-            "E0022: \"{written}\" has no unit{units}. Add one, or write the number in SI units (angles in degrees) without \
-             quotes."
+            "E0022: \"{written}\" has no unit{units}. Add one, or write the number in SI units (angles in degrees) \
+             without quotes."
         ));
     }
     let plain = unit.replace('²', "2").replace('³', "3").replace(['µ', 'μ'], "u").replace('^', "").replace('°', "deg");
@@ -266,8 +262,11 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
         let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
         let near = hint(&plain, all.flat_map(|(_, units)| units.iter().map(|(name, _)| *name)));
         let end = if near.is_empty() { "." } else { &near };
-        let unit = crate::report::shortened(unit);
-        return Err(format!("E0020: the unit `{unit}` in \"{written}\" is not known{units}{end}"));
+        let known = meant.map_or(String::new(), |dimension| format!(" Known units: {}.", list(dimension)));
+        return Err(format!(
+            "E0020: the unit `{}` of the value \"{written}\" is not known{end}{known}",
+            crate::report::shortened(unit)
+        ));
     };
     Ok((value(number, worth)?, dimension))
 }
@@ -275,10 +274,12 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
 /// The double nearest to the decimal number `text`.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     let written = crate::report::shortened(text);
-    let value: f64 = text.parse().map_err(|_| format!("E0010: {written} is not a number."))?;
+    let value: f64 = text.parse().unwrap_or(f64::NAN);
     let mantissa = text.split(['e', 'E']).next().unwrap_or(text);
     match value {
-        _ if value.is_nan() || text.contains("inf") => Err(format!("E0010: {written} is not a finite number.")),
+        _ if value.is_nan() || text.contains("inf") => {
+            Err(format!("E0010: {written} is not a number that can be used. Write a finite number."))
+        }
         _ if value.is_infinite() => Err(format!("E0010: {written} is too large for a floating-point number.")),
         0.0 if mantissa.contains(|c: char| matches!(c, '1'..='9')) => {
             Err(format!("E0010: {written} is too small for a floating-point number. Write 0 for zero."))
@@ -403,13 +404,17 @@ mod tests {
     #[test]
     fn wrong_units_say_which() {
         let rows = [
-            ("5 kPa", Length, "`kPa` is a unit of stress; expected a length (m, cm, mm"),
-            ("5 m", Number, "unit of length, but this key takes a number without unit"),
+            ("5 kPa", Length, "expected a length (m, cm, mm, um, nm, km), found `kPa`, a unit of stress"),
+            ("5 m", Number, "expected a pure number, found `m`, a unit of length"),
             ("5", Length, "has no unit"),
             ("5 KPa", Stress, "did you mean `kPa`?"),
             ("5 t/m2", Stress, "is a mass per area, not a stress. Write a force per area: `tf/m2`"),
             ("5 kg/cm2", Stress, "Write a force per area: `kgf/cm2`"),
-            ("5 furlong", Length, "E0020: the unit `furlong` in \"5 furlong\" is not known (m, cm"),
+            (
+                "5 furlong",
+                Length,
+                "E0020: the unit `furlong` of the value \"5 furlong\" is not known. Known units: m, cm",
+            ),
             ("five m", Length, "not a number with a unit"),
             ("nan m", Length, "E0022"),
             ("inf m", Length, "E0022"),
@@ -420,7 +425,7 @@ mod tests {
             ("", Length, "E0022"),
             ("-", Length, "E0022"),
             ("5 \u{202e}m", Length, "\\u{202e}"),
-            ("5 kN", LineForce, "plane strain considers 1 m of thickness. Give a force per metre (N/m, kN/m, MN/m)"),
+            ("5 kN", LineForce, "expected a force per metre of thickness (N/m, kN/m, MN/m), found `kN`"),
             ("5 kPa", Force, "expected a force (N, kN, MN)"),
             ("5 kPa", LineForce, "expected a force per metre of thickness (N/m"),
         ];

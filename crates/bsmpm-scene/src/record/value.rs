@@ -92,11 +92,6 @@ pub(super) fn expected(kind: &Kind, node: &Node) -> String {
     format!("E0013: the value has the wrong form: expected {kind}, found {}.", node.show())
 }
 
-/// The SI unit of a dimension behind a number, or nothing.
-fn si(dimension: Dimension) -> String {
-    dimension.units().next().map_or(String::new(), |unit| format!(" {unit}"))
-}
-
 /// What is wrong with a whole number that has more digits than one can have.
 fn too_long(text: &str) -> String {
     format!("E0010: {} is too large for a whole number. Write it with an exponent, such as 1e20.", shortened(text))
@@ -158,13 +153,13 @@ impl ValueReader<'_, '_> {
             Err(message) => return self.fail(node, message + self.key_meant(node)),
         };
         if !range.contains(value) {
-            let allowed = range.condition(self.name) + &si(dimension);
+            let allowed = range.condition(self.name) + &self.si(dimension);
             let why = if range.why.is_empty() { String::new() } else { format!(": {}", range.why) };
             return self.fail(node, format!("E0010: {} is outside the allowed range ({allowed}){why}.", node.show()));
         }
         let divides = dimension == Dimension::Time || !range.contains(0.0);
         if divides && value != 0.0 && value.abs() < dimension.least() {
-            let (least, unit) = (dimension.least(), si(dimension));
+            let (least, unit) = (dimension.least(), self.si(dimension));
             let found = node.show();
             let message = format!(
                 "E0010: {found} is too close to zero: {dimension} is at least {least:e}{unit}. Check the value."
@@ -187,6 +182,16 @@ impl ValueReader<'_, '_> {
         }
     }
 
+    /// The SI unit of a dimension behind a number; nothing of what has none, as pseudo-time.
+    fn si(&self, dimension: Dimension) -> String {
+        let unit = match dimension {
+            Dimension::Time | Dimension::Velocity if self.pseudo_time => None,
+            Dimension::LineForce if self.geometry != Geometry::PlaneStrain => Dimension::Force.units().next(),
+            _ => dimension.units().next(),
+        };
+        unit.map_or(String::new(), |unit| format!(" {unit}"))
+    }
+
     /// The value of a number with a unit, or what is wrong with it.
     fn worded(&self, node: &Node, text: &str, dimension: Dimension) -> Result<f64, String> {
         match dimension {
@@ -196,8 +201,8 @@ impl ValueReader<'_, '_> {
                 node.show()
             )),
             Dimension::Velocity if self.pseudo_time => Err(format!(
-                "E0023: {} has a unit of time, but time is a dimensionless pseudo-time in a quasi-static analysis. Write a \
-                 number, in m per unit of pseudo-time.",
+                "E0023: {} has a unit of time, but time is a dimensionless pseudo-time in a quasi-static analysis. \
+                 Write a number, in m per unit of pseudo-time.",
                 node.show()
             )),
             Dimension::LineForce if self.geometry != Geometry::PlaneStrain => unit::parse(text, Dimension::Force),
@@ -209,7 +214,7 @@ impl ValueReader<'_, '_> {
     fn bounded(&mut self, node: &Node, value: f64, dimension: Dimension) -> Option<f64> {
         let most = dimension.limit();
         if value.abs() > most {
-            let (found, unit) = (node.show(), si(dimension));
+            let (found, unit) = (node.show(), self.si(dimension));
             let message = format!(
                 "E0010: {found} is too large: {dimension} is at most {most:e}{unit}. Check the value and its unit."
             );
@@ -242,8 +247,8 @@ impl ValueReader<'_, '_> {
             if wrong == WRONG_ROWS && read.len() < items.len() {
                 let more = items.len() - read.len();
                 let message = format!(
-                    "E0009: {more} more rows were not read, because {WRONG_ROWS} rows in succession are wrong. Correct those \
-                     first."
+                    "E0009: {more} more rows were not read, because {WRONG_ROWS} rows in succession are wrong. \
+                     Correct those first."
                 );
                 return self.fail(node, message);
             }

@@ -52,8 +52,8 @@ impl Raster {
         if count[0].saturating_mul(count[1]) != rows.len() {
             let [x, y] = count;
             return Err(format!(
-                "E0032: the {} rows are not a regular raster: spacings of {} m along x and {} m along y need {x} x {y} rows. \
-                 Interpolate them to a raster.",
+                "E0032: the {} rows are not a regular raster: spacings of {} m along x and {} m along y need {x} x \
+                 {y} rows. Interpolate them to a raster.",
                 rows.len(),
                 spacing[0],
                 spacing[1]
@@ -190,13 +190,13 @@ mod tests {
             assert!(message.contains(what), "{message}");
         };
         let mut posts = rows(|_, _| 1.0);
-        says(&posts, 2.0, "is below the base, 2");
+        says(&posts, 2.0, "is below the base (2 m)");
         says(&posts, 1.0, "the body is empty");
         posts[7][0] += 0.1;
-        says(&posts, 0.0, "no regular raster");
+        says(&posts, 0.0, "not a regular raster");
         let mut twice = rows(|_, _| 1.0);
         twice[3] = twice[2];
-        says(&twice, 0.0, "has its post twice");
-        says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "two posts along x and two along y");
+        says(&twice, 0.0, "occurs twice");
+        says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "two points along x and two along y");
     }
 }

@@ -169,8 +169,8 @@ impl Surface {
             if !(0..=1).contains(&depth) && z - last > ROUNDING * height {
                 let [x, y] = at;
                 return Err(format!(
-                    "E0035: the surface intersects itself near [{x:.6}, {y:.6}, {z:.6}], or a part of it is turned inside out. \
-                     Repair it with a mesh tool."
+                    "E0035: the surface intersects itself near [{x:.6}, {y:.6}, {z:.6}], or a part of it is turned \
+                     inside out. Repair it with a mesh tool."
                 ));
             }
             (depth, last) = (depth - crossing, z);
@@ -237,8 +237,8 @@ fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), String> {
     match edges.values().find(|sides| sum(sides) != 0) {
         None => Ok(()),
         Some(sides) => Err(format!(
-            "E0034: the surface is not closed at {open} edges, the first from {:?} to {:?}. Weld vertices, fill holes and make \
-             normals consistent with a mesh tool.",
+            "E0034: the surface is not closed at {open} edges, the first from {:?} to {:?}. Weld vertices, fill holes \
+             and make normals consistent with a mesh tool.",
             sides[0].ends[0], sides[0].ends[1]
         )),
     }
@@ -429,10 +429,10 @@ mod tests {
         };
         let block = cuboid([0.0; 3], [1.0; 3]);
         says(Vec::new(), "no triangle");
-        says(block[1..].to_vec(), "not closed: 3 of its edges");
+        says(block[1..].to_vec(), "not closed at 3 edges");
         let mut one_turned = block.clone();
         one_turned[..1].clone_from_slice(&turned(block[..1].to_vec()));
-        says(one_turned, "not closed: 3 of its edges");
+        says(one_turned, "not closed at 3 edges");
         says([block.clone(), turned(block.clone())].concat(), "encloses no volume");
         says([block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(), "intersects itself");
         says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "turned inside out");

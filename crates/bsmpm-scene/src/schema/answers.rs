@@ -72,8 +72,8 @@ const ANSWERS: &[Answer] = &[
     symbol(&["St", "S_t"], "The sensitivity is the key `sensitivity`, of model = \"sensitive-clay\"."),
     symbol(
         &["tension_cutoff", "tension_cut_off", "tensile_strength"],
-        "E0012: a tension cut-off is not available: the largest mean tension is c / tan(phi). Reduce `cohesion`, which also \
-         reduces the shear strength; without cohesion use separation = \"gap\".",
+        "E0012: a tension cut-off is not available: the largest mean tension is c / tan(phi). Reduce `cohesion`, \
+         which also reduces the shear strength; without cohesion use separation = \"gap\".",
     ),
     symbol(
         &["adhesion"],
@@ -88,8 +88,8 @@ const ANSWERS: &[Answer] = &[
             "anchor", "anchors", "beam", "beams", "plate", "plates", "pile", "piles", "geogrid", "geogrids", "strut",
             "wall", "walls",
         ],
-        "E0012: structural elements are not available. Use an elastic [[body]] with the same bending stiffness, or a [[rigid]] \
-         body. Anchors and geogrids have no equivalent.",
+        "E0012: structural elements are not available. Use an elastic [[body]] with the same bending stiffness, or a \
+         [[rigid]] body. Anchors and geogrids have no equivalent.",
     ),
     top(&["bodies"], "Bodies are tables `[[body]]`, one for each."),
     top(&["materials"], "Materials are tables `[material.NAME]`, one for each."),
@@ -99,7 +99,8 @@ const ANSWERS: &[Answer] = &[
     top(&["mesh"], "The background grid is the table `[grid]`."),
     top(
         &["earthquake", "seismic"],
-        "A ground motion is the table `[shaking]`; for a pseudo-static analysis add a horizontal part to `gravity.acceleration`.",
+        "A ground motion is the table `[shaking]`; for a pseudo-static analysis add a horizontal part to \
+         `gravity.acceleration`.",
     ),
     anywhere(&["probe"], "A quantity at a place over time is a table [[history]] with `quantity` and `at`."),
     anywhere(
@@ -112,8 +113,8 @@ const ANSWERS: &[Answer] = &[
     ),
 ];
 
-/// What to write for a key that a table does not have, if others than its author have typed it before. It begins with its
-/// code where what is meant does not exist.
+/// What to write for a key that a table does not have, if others than its author have typed it before. It begins with
+/// its code where what is meant does not exist.
 pub(crate) fn answer(table: &Table, key: &str) -> Option<&'static str> {
     let is_meant = |answer: &&Answer| answer.table.is_empty() || answer.table == table.header;
     ANSWERS.iter().filter(is_meant).find(|answer| answer.names.contains(&key)).map(|answer| answer.text)

@@ -9,8 +9,8 @@ use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 /// Of a ground motion in the format of the PEER database.
-const PEER: &str = "E0012: PEER records (.AT2) are not read. Convert the record to rows of time and acceleration with the \
-                    heading `t [s], a [g]`.";
+const PEER: &str = "E0012: PEER records (.AT2) are not read. Convert the record to rows of time and acceleration with \
+                    the heading `t [s], a [g]`.";
 
 /// A table in the place of rows, as it is written.
 struct FileReference<'a> {
@@ -124,19 +124,21 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         if cells.len() != expected {
             let found = cells.len();
             return Err(bad(format!(
-                "E0028: line {number} has not {expected} columns but {found}. Give all rows as many columns as the first."
+                "E0028: line {number} has not {expected} columns but {found}. Give all rows as many columns as the \
+                 first."
             )));
         }
         if along.is_some() && expected != 2 {
             return Err(bad(format!(
-                "E0028: with `along` a row has two columns, a time and a value, but line {number} has {expected}. Delete \
-                 `along`."
+                "E0028: with `along` a row has two columns, a time and a value, but line {number} has {expected}. \
+                 Delete `along`."
             )));
         }
         let mut row = Vec::with_capacity(cells.len() + 1);
         for (column, cell) in cells.iter().enumerate() {
             let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
-            let value = value.ok_or_else(|| bad(format!("E0028: `{cell}` in line {number} is not a number.")))?;
+            let value = value
+                .ok_or_else(|| bad(format!("E0028: `{cell}` in line {number} of the data file is not a number.")))?;
             row.push(match units.get(column) {
                 Some(Some(unit)) => format!("\"{value:?} {unit}\""),
                 _ => format!("{value:?}"),
@@ -275,13 +277,13 @@ mod tests {
     #[test]
     fn what_is_no_row_of_numbers_is_refused_with_its_line() {
         let message = |text: &str, along| rows(text, (along, PLANE)).unwrap_err().to_string();
-        assert_eq!(message("0,1\n2,x", None), "E0028: `x` in line 2 is not a number.");
+        assert_eq!(message("0,1\n2,x", None), "E0028: `x` in line 2 of the data file is not a number.");
         assert_eq!(
             message("0,1\n2", None),
             "E0028: line 2 has not 2 columns but 1. Give all rows as many columns as the first."
         );
         assert_eq!(message("t, ax\n", None), "E0028: the file has no row of numbers.");
-        assert_eq!(message("0,nan", None), "E0028: `nan` in line 1 is not a number.");
+        assert_eq!(message("0,nan", None), "E0028: `nan` in line 1 of the data file is not a number.");
         assert!(message("0,1,2", Some("x")).contains("two columns, a time and a value, but line 1 has 3"));
         let hidden =
             "E0029: the units in `# t [s], a [g]` are not read, because `#` makes the line a comment. Delete the `#`.";

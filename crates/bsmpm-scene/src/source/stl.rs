@@ -27,13 +27,14 @@ fn length(number: u32) -> u64 {
 pub(super) fn broken(bytes: &[u8]) -> Error {
     let message = match told(bytes) {
         Some(number) => format!(
-            "E0031: the binary STL file has {} bytes, but its {number} triangles need {}. The file is cut off. Export it again.",
+            "E0031: the binary STL file has {} bytes, but its {number} triangles need {}. The file is cut off. Export \
+             it again.",
             bytes.len(),
             length(number)
         ),
         None => format!(
-            "E0031: the binary STL file has {} bytes, but its heading needs {STL_HEADING}. The file is cut off. Export it \
-             again.",
+            "E0031: the binary STL file has {} bytes, but its heading needs {STL_HEADING}. The file is cut off. \
+             Export it again.",
             bytes.len()
         ),
     };

@@ -95,7 +95,7 @@ pub const FLOW: &[Row] = &[
         "seepage = true",
         "seepage = true\nhead = 2",
         "drain.2.seepage",
-        "only one of head, head_path, pressure, pressure_path, seepage may be",
+        "E0016",
     ),
     row("seepage = true", "head = 2", "inflow.0", "what is put in leaves there at once").down(15),
     row("circle = { centre = [4.0, 0.0], radius = 1.0 }", "face = \"bottom\"", "drain.4", "gives another pressure")

@@ -38,16 +38,12 @@ const MATRIX: &[Input] = &[
             "young    = \"20 MPa\"\n",
             "",
             YOUNG_KEY,
-            "missing; it is a number (Pa) or a string with a unit",
+            "this key is missing. Add it; its value is a number (Pa) or a string with a unit",
         )
         .up(2)],
         ..NONE
     },
-    Input {
-        id: "I04",
-        refused: &[row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "no valid TOML: duplicate key").down(1)],
-        ..NONE
-    },
+    Input { id: "I04", refused: &[row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "E0005").down(1)], ..NONE },
     Input {
         id: "I08",
         refused: &[
@@ -66,13 +62,8 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I09",
         refused: &[
-            row(
-                POISSON,
-                "poisson = 0.5",
-                "material.sand.poisson",
-                "0.5 is out of range; allowed: -1 < poisson < 0.5 (at 0.5",
-            ),
-            row(POISSON, "poisson = 0.5000001", "material.sand.poisson", "allowed: -1 < poisson < 0.5"),
+            row(POISSON, "poisson = 0.5", "material.sand.poisson", "0.5 is out of range; (-1 < poisson < 0.5 (at 0.5"),
+            row(POISSON, "poisson = 0.5000001", "material.sand.poisson", "(-1 < poisson < 0.5"),
             row(POISSON, "poisson = -1", "material.sand.poisson", "-1 is out of range"),
             row(POISSON, "poisson = -1.5", "material.sand.poisson", "-1.5 is out of range"),
         ],
@@ -106,7 +97,7 @@ const MATRIX: &[Input] = &[
                 "30.1 is out of range; allowed: 0 <= dilation_angle <= friction_angle = 30",
             ),
             row("dilation_angle = 5", "dilation_angle = -1", "material.sand.dilation_angle", "-1 is out of range"),
-            row("\"1 kPa\"", "\"-1 kPa\"", "material.sand.cohesion", "allowed: cohesion >= 0"),
+            row("\"1 kPa\"", "\"-1 kPa\"", "material.sand.cohesion", "(cohesion >= 0"),
         ],
         taken: &[
             (
@@ -128,7 +119,7 @@ const MATRIX: &[Input] = &[
                 "is not above lower = [0.0, 0.0]: the body is empty",
             ),
             row("upper = [4.0, 1.0] }", "upper = [4.0, 1e-12] }", "body.0.box.upper", "it has no points"),
-            row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "allowed: radius > 0"),
+            row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "(radius > 0"),
         ],
         refused_static: &[row("[[body]]\nmaterial", "[[bodies]]\nmaterial", "bodies", "unknown key `bodies`")],
         ..NONE
@@ -232,12 +223,7 @@ const MATRIX: &[Input] = &[
                 "a path needs at least one row [t, ux, uy] with t > 0",
             ),
             row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "at least one row"),
-            row(
-                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
-                "[[1.0, 0, nan]]",
-                "prescribed.1.path",
-                "nan is no finite number",
-            ),
+            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1.0, 0, nan]]", "prescribed.1.path", "nan is E0010"),
             row(
                 "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
                 "[[1e-300, 0, 0]]",

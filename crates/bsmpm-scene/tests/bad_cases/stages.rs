@@ -47,7 +47,7 @@ pub const STAGES: &[Row] = &[
     row("factor = 1.25", "factor = 1.25\nsteps = 1001", "strength_reduction.steps", "0 <= steps <= 1000").down(1),
     row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
     row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),
-    row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "out of range"),
+    row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "E0010"),
     row("name     = \"fill\"", "name = \"a b\"", "body.5.name", "expected a name"),
     row(
         "[[stage]]\nname",

@@ -95,7 +95,7 @@ fn one_of_two_exclusive_keys_removes_the_other() {
 #[test]
 fn errors_cite_the_override() {
     let rows = [
-        ("grid.cell=-1", "grid.cell", "allowed: cell > 0"),
+        ("grid.cell=-1", "grid.cell", "(cell > 0"),
         ("grid.cell=5 s", "grid.cell", "unit of time"),
         ("grid.cel=5 mm", "grid.cel", "did you mean `cell`?"),
         ("body.6.points_per_cell=3", "body.6", "missing"),
@@ -109,22 +109,22 @@ fn errors_cite_the_override() {
         ("shaking={acceleration={file=\"a.csv\"}}", "shaking.acceleration", "not by --set: name it there"),
         ("title.x=3", "title.x", "which is no table"),
         ("grid.cell", "", "expected KEY=VALUE"),
-        ("grid..cell=1", "grid..cell", "no key path"),
-        ("=1", "", "no key path"),
-        ("grid.cell=[1", "grid.cell", "no valid TOML"),
-        ("a.b.c.d.e.f.g.h=1", "a.b.c.d.e.f.g.h", "no key path"),
+        ("grid..cell=1", "grid..cell", "E0025"),
+        ("=1", "", "E0025"),
+        ("grid.cell=[1", "grid.cell", "E0025"),
+        ("a.b.c.d.e.f.g.h=1", "a.b.c.d.e.f.g.h", "E0025"),
         ("material.mud.young=1", "material.mud.model", "missing"),
         ("footing.interface=soft", "footing.interface", "expected one of \"smooth\", \"rough\""),
         ("strength_reduction.factor=0.01", "strength_reduction.factor", "0.1 <= factor <= 100"),
         ("body.3.subtract.0.circle.radius=0", "body.3.subtract.0.circle.radius", "radius > 0"),
-        ("profile.0.end=1", "profile.0.end", "unknown key"),
+        ("profile.0.end=1", "profile.0.end", "E0011"),
     ];
     for (text, key, says) in rows {
         let errors = set(FULL, &[text]).unwrap_err();
         let fits = |error: &Error| {
             error.place == Place::Override(text.to_owned())
                 && error.key.starts_with(key)
-                && error.message.contains(says)
+                && error.to_string().contains(says)
         };
         assert!(errors.iter().any(fits), "{text}: {errors:#?}");
         assert!(errors[0].to_string().starts_with(&format!("--set {text}: ")), "{}", errors[0]);
