@@ -10,6 +10,9 @@ use std::path::Path;
 /// Largest case file, in bytes; a larger one is refused before it is parsed.
 pub const MAX_BYTES: usize = 1 << 24;
 
+/// The same in MiB, for messages.
+const LIMIT: usize = MAX_BYTES >> 20;
+
 /// Characters of a line that an excerpt shows at most.
 const EXCERPT: usize = 100;
 
@@ -28,7 +31,7 @@ pub fn load(path: &Path) -> io::Result<Vec<u8>> {
     let whole = rows::inlined(text, path.parent().unwrap_or(Path::new(""))).map(String::into_bytes)?;
     if whole.len() > MAX_BYTES {
         let message = format!(
-            "E0004: the case and the rows of its data files have more than {MAX_BYTES} bytes, the limit. Reduce the \
+            "E0004: the case and the rows of its data files have more than {LIMIT} MiB, the limit. Reduce the \
              number of rows."
         );
         return Err(io::Error::new(io::ErrorKind::InvalidData, message));
@@ -55,8 +58,7 @@ fn bounded(path: &Path) -> io::Result<Vec<u8>> {
 pub(crate) fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Vec<Error>> {
     let whole = |message: &str| vec![Error::of_file(name, message)];
     if bytes.len() > MAX_BYTES {
-        let message =
-            format!("E0004: the file has more than {MAX_BYTES} bytes, the limit of a case. Check the file's name.");
+        let message = format!("E0004: the file has more than {LIMIT} MiB, the limit of a case. Check the file's name.");
         return Err(whole(&message));
     }
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {

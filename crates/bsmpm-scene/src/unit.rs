@@ -239,7 +239,7 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
     let written = crate::report::shortened(text);
     let units = meant.map_or(String::new(), |dimension| format!(" ({})", list(dimension)));
     let Some((number, unit)) = split(text) else {
-        return Err(format!("E0022: \"{written}\" is not a number with a unit{units}."));
+        return Err(format!("E0022: \"{written}\" is not a number with a unit{units}. Begin with the number."));
     };
     if unit.is_empty() {
         return Err(format!(
@@ -280,7 +280,9 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
         _ if value.is_nan() || text.contains("inf") => {
             Err(format!("E0010: {written} is not a number that can be used. Write a finite number."))
         }
-        _ if value.is_infinite() => Err(format!("E0010: {written} is too large for a floating-point number.")),
+        _ if value.is_infinite() => {
+            Err(format!("E0010: {written} is too large for a floating-point number. Check its exponent."))
+        }
         0.0 if mantissa.contains(|c: char| matches!(c, '1'..='9')) => {
             Err(format!("E0010: {written} is too small for a floating-point number. Write 0 for zero."))
         }
@@ -292,7 +294,8 @@ fn value(number: &str, worth: Worth) -> Result<f64, String> {
     let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     match worth {
         Ten(shift) => {
-            let beyond = |_| format!("E0010: {number} is outside the range of floating-point numbers.");
+            let beyond =
+                |_| format!("E0010: {number} is outside the range of floating-point numbers. Check its exponent.");
             let exponent: i64 = exponent.parse().map_err(beyond)?;
             finite(&format!("{mantissa}e{}", exponent.saturating_add(shift.into())))
         }

@@ -7,8 +7,10 @@ use std::collections::HashSet;
 /// A case on `grid` with `bodies`, the keys of a body each, and `n` points per cell.
 fn try_case(grid: &str, bodies: &[&str], n: usize) -> Result<Case, Vec<Error>> {
     let mut text = format!(
-        "geometry = \"plane-strain\"\n[analysis]\ntype = \"dynamic\"\nend = 1\ndt = 1\n[grid]\ndegree = \"linear\"\n{grid}\n\
-         [material.m]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n[gravity]\nacceleration = [0, -10]\n"
+        "geometry = \"plane-strain\"\n[analysis]\ntype = \"dynamic\"\nend = 1\ndt = 1\n[grid]\ndegree = \
+         \"linear\"\n{grid}\n\
+         [material.m]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000\n[gravity]\nacceleration = [0, \
+         -10]\n"
     );
     for body in bodies {
         text += &format!("[[body]]\nmaterial = \"m\"\npoints_per_cell = {n}\n{body}\n");

@@ -127,8 +127,8 @@ impl ValueReader<'_, '_> {
         let message = match node.origin {
             Origin::Override(_) => UNREAD,
             Origin::Text(_) | Origin::Nowhere => {
-                "E0027: the data file is not read, because this is not an inline table of `file` and `along`. Write \
-                 { file = \"rows.csv\" }."
+                "E0027: a data file needs braces with `file`, and nothing else but `along`. Write { file = \
+                 \"rows.csv\" }."
             }
         };
         self.fail(node, message)

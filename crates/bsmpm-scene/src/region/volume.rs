@@ -62,8 +62,8 @@ impl Volume {
         // A factor below zero: cells that seem whole hold more than the body.
         if matches!(made.filling, Filling::Lattice { .. }) && (unseen || made.scale() <= 0.0) {
             return Err(
-                "E0037: the shape is so thin that the integration lines of the cells miss it. Use smaller cells, or \
-                 make it thicker."
+                "E0037: the shape is so thin that it lies between the lines on which its volume is computed. Use \
+                 smaller cells, or make it thicker."
                     .into(),
             );
         }

@@ -1,6 +1,6 @@
 //! Rows of numbers from text files beside the case: `{ file = "record.csv", along = "x" }` in the place of a list.
 
-use super::{MAX_BYTES, bounded, stl};
+use super::{LIMIT, MAX_BYTES, bounded, stl};
 use crate::words::{Geometry, Word};
 use bsmpm_messages::with_context;
 use std::io::{self, Error, ErrorKind};
@@ -74,7 +74,7 @@ fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
 fn read(path: &Path) -> io::Result<Vec<u8>> {
     let bytes = bounded(path)?;
     if bytes.len() > MAX_BYTES {
-        let message = format!("E0004: the file has more than {MAX_BYTES} bytes, the limit. Reduce the number of rows.");
+        let message = format!("E0004: the file has more than {LIMIT} MiB, the limit. Reduce the number of rows.");
         return Err(Error::new(ErrorKind::InvalidData, message));
     }
     Ok(bytes)
@@ -137,8 +137,9 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         let mut row = Vec::with_capacity(cells.len() + 1);
         for (column, cell) in cells.iter().enumerate() {
             let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
-            let value = value
-                .ok_or_else(|| bad(format!("E0028: `{cell}` in line {number} of the data file is not a number.")))?;
+            let value = value.ok_or_else(|| {
+                bad(format!("E0028: `{cell}` in line {number} of the data file is not a number. Correct the line."))
+            })?;
             row.push(match units.get(column) {
                 Some(Some(unit)) => format!("\"{value:?} {unit}\""),
                 _ => format!("{value:?}"),
@@ -151,7 +152,7 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         whole.push_str(&format!("[{}],", row.join(",")));
     }
     if width.is_none() {
-        return Err(bad("E0028: the file has no row of numbers.".to_owned()));
+        return Err(bad("E0028: the data file has no row of numbers. Check its name.".to_owned()));
     }
     whole.push(']');
     Ok(whole)
@@ -167,12 +168,16 @@ fn grid(text: &str) -> io::Result<String> {
         let value = words.next().and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
         header.insert(
             key.to_ascii_lowercase(),
-            value.ok_or_else(|| bad(format!("E0030: `{key}` in the header of the ASCII grid has no number.")))?,
+            value.ok_or_else(|| {
+                bad(format!("E0030: `{key}` in the header of the ASCII grid has no number. Correct the header."))
+            })?,
         );
     }
     let given = |key: &str| header.get(key).copied();
-    let needed =
-        |key: &str| given(key).ok_or_else(|| bad(format!("E0030: the header of the ASCII grid has no `{key}`.")));
+    let needed = |key: &str| {
+        given(key)
+            .ok_or_else(|| bad(format!("E0030: the header of the ASCII grid has no `{key}`. Add a line with it.")))
+    };
     let (columns, lines, cell) = (needed("ncols")?, needed("nrows")?, needed("cellsize")?);
     let first = |axis: &str| match given(&format!("{axis}llcenter")) {
         Some(center) => Ok(center),
@@ -181,12 +186,13 @@ fn grid(text: &str) -> io::Result<String> {
     let (x, y) = (first("x")?, first("y")?);
     let heights: Vec<&str> = words.collect();
     if columns < 2.0 || lines < 2.0 || columns.fract() + lines.fract() != 0.0 || cell <= 0.0 {
-        let message = "E0030: the ASCII grid needs whole numbers above 1 as ncols and nrows, and a cellsize above 0.";
+        let message = "E0030: the ASCII grid needs whole numbers above 1 as ncols and nrows, and a cellsize above 0. \
+        Correct its header.";
         return Err(bad(message.to_owned()));
     }
     if heights.len() as f64 != columns * lines {
         return Err(bad(format!(
-            "E0030: the ASCII grid has {} heights, but ncols times nrows is {}.",
+            "E0030: the ASCII grid has {} heights, but ncols times nrows is {}. Export it again.",
             heights.len(),
             columns * lines
         )));
@@ -196,8 +202,9 @@ fn grid(text: &str) -> io::Result<String> {
         let (row, column) = (number / columns as usize, number % columns as usize);
         let value = height.parse::<f64>().ok().filter(|value| value.is_finite());
         let place = format!("row {}, column {}", row + 1, column + 1);
-        let value =
-            value.ok_or_else(|| bad(format!("E0030: `{height}` in {place} of the ASCII grid is not a number.")))?;
+        let value = value.ok_or_else(|| {
+            bad(format!("E0030: `{height}` in {place} of the ASCII grid is not a number. Correct the height."))
+        })?;
         if given("nodata_value") == Some(value) {
             return Err(bad(format!(
                 "E0030: {place} of the ASCII grid has no data. Fill it, or cut the grid to the part that has data."
@@ -252,13 +259,19 @@ mod tests {
         );
         assert_eq!(
             message(&format!("{header}1 2\n3\n")),
-            "E0030: the ASCII grid has 3 heights, but ncols times nrows is 4."
+            "E0030: the ASCII grid has 3 heights, but ncols times nrows is 4. Export it again."
         );
-        assert_eq!(message("ncols 2\nnrows 2\n1 2\n3 4"), "E0030: the header of the ASCII grid has no `cellsize`.");
-        assert_eq!(message("ncols x\n"), "E0030: `ncols` in the header of the ASCII grid has no number.");
+        assert_eq!(
+            message("ncols 2\nnrows 2\n1 2\n3 4"),
+            "E0030: the header of the ASCII grid has no `cellsize`. Add a line with it."
+        );
+        assert_eq!(
+            message("ncols x\n"),
+            "E0030: `ncols` in the header of the ASCII grid has no number. Correct the header."
+        );
         assert_eq!(
             message(&format!("{header}1 2\n3 nan\n")),
-            "E0030: `nan` in row 2, column 2 of the ASCII grid is not a number."
+            "E0030: `nan` in row 2, column 2 of the ASCII grid is not a number. Correct the height."
         );
     }
 
@@ -277,13 +290,19 @@ mod tests {
     #[test]
     fn what_is_no_row_of_numbers_is_refused_with_its_line() {
         let message = |text: &str, along| rows(text, (along, PLANE)).unwrap_err().to_string();
-        assert_eq!(message("0,1\n2,x", None), "E0028: `x` in line 2 of the data file is not a number.");
+        assert_eq!(
+            message("0,1\n2,x", None),
+            "E0028: `x` in line 2 of the data file is not a number. Correct the line."
+        );
         assert_eq!(
             message("0,1\n2", None),
             "E0028: line 2 has not 2 columns but 1. Give all rows as many columns as the first."
         );
-        assert_eq!(message("t, ax\n", None), "E0028: the file has no row of numbers.");
-        assert_eq!(message("0,nan", None), "E0028: `nan` in line 1 of the data file is not a number.");
+        assert_eq!(message("t, ax\n", None), "E0028: the data file has no row of numbers. Check its name.");
+        assert_eq!(
+            message("0,nan", None),
+            "E0028: `nan` in line 1 of the data file is not a number. Correct the line."
+        );
         assert!(message("0,1,2", Some("x")).contains("two columns, a time and a value, but line 1 has 3"));
         let hidden =
             "E0029: the units in `# t [s], a [g]` are not read, because `#` makes the line a comment. Delete the `#`.";

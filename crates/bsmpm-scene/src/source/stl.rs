@@ -33,7 +33,7 @@ pub(super) fn broken(bytes: &[u8]) -> Error {
             length(number)
         ),
         None => format!(
-            "E0031: the binary STL file has {} bytes, but its heading needs {STL_HEADING}. The file is cut off. \
+            "E0031: the binary STL file has {} bytes, but its header needs {STL_HEADING}. The file is cut off. \
              Export it again.",
             bytes.len()
         ),
@@ -74,7 +74,7 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
                     words.filter_map(|word| word.parse().ok()).filter(|at: &f64| at.is_finite()).collect();
                 if numbers.len() != 3 {
                     return Err(bad(format!(
-                        "E0031: the vertex in line {} of the STL file has not three numbers.",
+                        "E0031: the vertex in line {} of the STL file has not three numbers. Export it again.",
                         number + 1
                     )));
                 }
@@ -86,7 +86,7 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
             }
             Some("endfacet") => {
                 return Err(bad(format!(
-                    "E0031: the facet that ends in line {} of the STL file has not three vertices.",
+                    "E0031: the facet that ends in line {} of the STL file has not three vertices. Export it again.",
                     number + 1
                 )));
             }
@@ -120,7 +120,7 @@ mod tests {
         bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
         assert!(triangles(&bytes).unwrap_err().to_string().contains("a corner of triangle 1 "));
         assert!(broken(&bytes[..133]).to_string().contains("has 133 bytes, but its 1 triangles need 134"));
-        assert!(broken(&bytes[..80]).to_string().contains("has 80 bytes, but its heading needs 84"));
+        assert!(broken(&bytes[..80]).to_string().contains("has 80 bytes, but its header needs 84"));
         let refuses = |text: &str, says: &str| {
             let message = facets(text).unwrap_err().to_string();
             assert!(message.starts_with("E0031: ") && message.contains(says), "{message}");

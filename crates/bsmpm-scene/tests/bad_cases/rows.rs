@@ -150,16 +150,16 @@ pub const RANGES: &[Row] = &[
     row("\"20 MPa\"", "99999999999999999999", "material.sand.young", "too large"),
     row("\"20 MPa\"", "0.0", "material.sand.young", "(young > 0"),
     row("\"20 MPa\"", "\"-20 MPa\"", "material.sand.young", "(young > 0"),
-    row("\"30 deg\"", "90", "material.sand.friction_angle", "allowed: 0 <= friction_angle < 90"),
-    row("\"30 deg\"", "-1", "material.sand.friction_angle", "allowed: 0 <= friction_angle < 90"),
-    row("\"30 deg\"", "\"2 rad\"", "material.sand.friction_angle", "\"2 rad\" is out of range"),
+    row("\"30 deg\"", "90", "material.sand.friction_angle", "(0 <= friction_angle < 90"),
+    row("\"30 deg\"", "-1", "material.sand.friction_angle", "(0 <= friction_angle < 90"),
+    row("\"30 deg\"", "\"2 rad\"", "material.sand.friction_angle", "\"2 rad\" is outside the allowed range"),
     row(
         "dilation_angle = 5",
         "dilation_angle = 31",
         "material.sand.dilation_angle",
         "dilation_angle <= friction_angle = 30",
     ),
-    row("dilation_angle = 5", "dilation_angle = -5", "material.sand.dilation_angle", "allowed: 0 <= dilation_angle"),
+    row("dilation_angle = 5", "dilation_angle = -5", "material.sand.dilation_angle", "(0 <= dilation_angle"),
     row("\"1 kPa\"", "-1", "material.sand.cohesion", "(cohesion >= 0"),
     row("\"2 t/m3\"", "0", "material.sand.density", "(density > 0"),
     row("\"18 kN/m3\"", "-18e3", "material.clay.unit_weight", "(unit_weight > 0"),
@@ -168,18 +168,13 @@ pub const RANGES: &[Row] = &[
     row("\"10 ms\"", "0", "analysis.dt", "(dt > 0"),
     row("\"10 ms\"", "\"2 s\"", "analysis.dt", "dt <= end = 1"),
     row("\"10 ms\"", "1e-12", "analysis.dt", "steps of dt to the end; at most"),
-    row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "allowed: 1 <= steps"),
-    row("dt   = \"10 ms\"", "steps = 1000000000000", "analysis.steps", "allowed: 1 <= steps <= 1000000000"),
-    row("dt   = \"10 ms\"", "steps = -1", "analysis.steps", "-1 is out of range"),
+    row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "(1 <= steps"),
+    row("dt   = \"10 ms\"", "steps = 1000000000000", "analysis.steps", "(1 <= steps <= 1000000000"),
+    row("dt   = \"10 ms\"", "steps = -1", "analysis.steps", "-1 is outside the allowed range"),
     row("dt   = ", "spectral_radius = 1.1\ndt   = ", "analysis.spectral_radius", "0 <= spectral_radius <= 1"),
-    row("dt   = ", "spectral_radius = -0.1\ndt   = ", "analysis.spectral_radius", "-0.1 is out of range"),
+    row("dt   = ", "spectral_radius = -0.1\ndt   = ", "analysis.spectral_radius", "-0.1 is outside the allowed range"),
     row("dt   = ", "mass = \"consistant\"\ndt   = ", "analysis.mass", "consistent"),
-    row(
-        "dt   = ",
-        "newmark_gamma = 0.4\ndt   = ",
-        "analysis.newmark_gamma",
-        "0.5 <= newmark_gamma <= 1 (below 1/2 it gains energy)",
-    ),
+    row("dt   = ", "newmark_gamma = 0.4\ndt   = ", "analysis.newmark_gamma", "0.5 <= newmark_gamma <= 1): below 0.5"),
     row("points_per_cell = 3", "points_per_cell = 0", "body.0.points_per_cell", "1 <= points_per_cell <= 100"),
     row("points_per_cell = 3", "points_per_cell = 101", "body.0.points_per_cell", "1 <= points_per_cell <= 100"),
     row("-9.81]", "1e308]", "gravity.acceleration", "an acceleration is at most"),
@@ -238,8 +233,7 @@ pub const RULES: &[Row] = &[
         "grid.upper",
         "differs from the breakpoints of x",
     ),
-    row("lower = [0.0, \"0 m\"]\n", "", "grid.lower", "this key is missing. Add it; its value is needed with `cell`")
-        .up(1),
+    row("lower = [0.0, \"0 m\"]\n", "", "grid.lower", "missing; it is needed with `cell`").up(1),
     row("upper = [4.0, 3.0]", "upper = [4.0, 0.0]", "grid.upper", "is not above lower"),
     row("cell  = [0.5, \"50 cm\"]", "cell = [0.5, 0.7]", "grid.cell", "no whole number, and neither face is free"),
     row("friction_angle = \"30 deg\"\n", "", "material.sand.friction_angle", "model \"mohr-coulomb\" needs it").up(4),
@@ -345,7 +339,12 @@ pub const TOLD: &[Row] = &[
         "profile.0.quantities",
         "expected a list of words",
     ),
-    row("quantities = [\"displacement\", ", "quantities = [\"q\", ", "profile.0.quantities", "\"q\" is named twice"),
+    row(
+        "quantities = [\"displacement\", ",
+        "quantities = [\"q\", ",
+        "profile.0.quantities",
+        "the list has \"q\" twice",
+    ),
     row(
         "fixed = false",
         "[[profile]]\nname = \"Depth\"\nfrom = [0, 0]\nto = [1, 1]\ncount = 2\nquantities = [\"p\"]",
@@ -354,7 +353,7 @@ pub const TOLD: &[Row] = &[
     )
     .down(1),
     row("fields = [\"q\", ", "fields = [\"p\", ", "output.fields", "expected a list of words"),
-    row("fields = [\"q\", ", "fields = [\"density\", ", "output.fields", "\"density\" is named twice"),
+    row("fields = [\"q\", ", "fields = [\"density\", ", "output.fields", "the list has \"density\" twice"),
 ];
 
 /// Profiles in a quasi-static case.
@@ -379,8 +378,8 @@ pub const ABSORBING: &[Row] = &[
 
 /// Quasi-static cases (I13, I16, I18).
 pub const QUASI_STATIC: &[Row] = &[
-    row("end   = 1.0", "end = \"1 s\"", "analysis.end", "pseudo-time without unit"),
-    row("every = 0.5", "every = \"1 s\"", "output.every", "pseudo-time without unit"),
+    row("end   = 1.0", "end = \"1 s\"", "analysis.end", "E0023"),
+    row("every = 0.5", "every = \"1 s\"", "output.every", "E0023"),
     row("bottom = \"fixed\"", "bottom = \"free\"", "boundary", "nothing holds the bodies along x").up(1),
     row("bottom = \"fixed\"", "bottom = \"roller\"", "boundary", "nothing holds the bodies along x").up(1),
     row("bottom = \"fixed\"", "left = \"roller\"", "boundary", "nothing holds the bodies along y").up(1),
@@ -395,7 +394,8 @@ pub const QUASI_STATIC: &[Row] = &[
     .up(1),
     row(
         "bottom = \"fixed\"",
-        "bottom = \"free\"\n[[rigid]]\nname = \"free\"\npolygon = [[0, -1], [2, -1], [2, 0], [0, 0]]\nfriction_coefficient = 0.5\n\
+        "bottom = \"free\"\n[[rigid]]\nname = \"free\"\npolygon = [[0, -1], [2, -1], [2, 0], [0, \
+         0]]\nfriction_coefficient = 0.5\n\
          free = [\"y\"]\nforce = [0, 1]",
         "boundary",
         "nothing holds the bodies along y",

@@ -155,7 +155,8 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
          [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"soft\" }]\n\
-         [material.soft]\nmodel = \"modified-cam-clay\"\nkappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = 1\n\
+         [material.soft]\nmodel = \"modified-cam-clay\"\nkappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = \
+         1\n\
          ocr = 1.5\nyoung = 1e6\npoisson = 0.3",
         "stage.0.materials.0.to",
         "is not told by the stress",
@@ -219,7 +220,8 @@ pub const STAGES_OF_ONE: &[Row] = &[
     .down(6),
     row(
         "[output]",
-        "[[body]]\nname = \"fill\"\nmaterial = \"soil\"\npoints_per_cell = 3\nbox = { lower = [0, 1], upper = [2, 1.5] }\n\
+        "[[body]]\nname = \"fill\"\nmaterial = \"soil\"\npoints_per_cell = 3\nbox = { lower = [0, 1], upper = [2, \
+         1.5] }\n\
          [[stage]]\nat = 0.5\nadd = [\"fill\"]\n[[traction]]\nfrom = [0, 1]\nto = [2, 1]\npressure = 1e3\n[output]",
         "traction.0.pressure",
         "at t = 0.5, when it acts, bodies lie on both sides of it",
@@ -227,7 +229,8 @@ pub const STAGES_OF_ONE: &[Row] = &[
     .down(11),
     row(
         "[output]",
-        "[[stage]]\nat = 0.5\nboundary = { right = \"roller\" }\n[[history]]\nquantity = \"reaction\"\nface = \"right\"\n\
+        "[[stage]]\nat = 0.5\nboundary = { right = \"roller\" }\n[[history]]\nquantity = \"reaction\"\nface = \
+         \"right\"\n\
          name = \"held\"\n[[history]]\nquantity = \"reaction\"\nface = \"left\"\n[output]",
         "history.1.face",
         "nothing is ever held at left",

@@ -8,7 +8,7 @@ const GRAVITY: &str = "[gravity]\nacceleration = [0.0, -9.81]\n";
 
 /// The level, the line, weights, and what water needs.
 pub const WATER: &[Row] = &[
-    row(LEVEL, "", "water", "none of the keys level, level_path, line, line_path").up(1),
+    row(LEVEL, "", "water", "one of level, level_path, line, line_path").up(1),
     row(LEVEL, "level = 0.75\nline = [[0, 1]]", "water.line", "E0016").down(1),
     row(LEVEL, "level = \"10 kPa\"", "water.level", "expected a length"),
     row(LEVEL, "level = 0.0", "water.level", "nowhere above the grid's lower face"),
@@ -40,7 +40,7 @@ pub const WATER: &[Row] = &[
 pub const RATIO_AND_WATER: &[Row] = &[
     row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "[water] gives the pore pressure, too")
         .down(1),
-    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 1.0", RU, "allowed: 0 < ru < 1").down(1),
+    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 1.0", RU, "(0 < ru < 1").down(1),
     row("[water]\nlevel = 0.75\n", "[water]\nlevel = 0.75\nru = 0.3\n", "water.ru", "E0011").down(2),
 ];
 

@@ -114,7 +114,8 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ("model    = \"mohr-coulomb\"", "model = \"mohr-coulomb-softening\""),
         (
             "separation = \"plastic\"",
-            "residual_friction_angle = 20\nresidual_dilation_angle = 5\nresidual_cohesion = 10\nsoftening_strain = 0.2\n\
+            "residual_friction_angle = 20\nresidual_dilation_angle = 5\nresidual_cohesion = 10\nsoftening_strain = \
+             0.2\n\
              softening = \"exponential\"\nband_width = 0.1",
         ),
         ("factor = 1.25", "factor = 1.25\nelastic = false\nstiffness = 1.5\nunloaded = false"),

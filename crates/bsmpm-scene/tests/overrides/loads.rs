@@ -108,7 +108,8 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
     assert_eq!(side("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3"), -1.0, "below, on the right of its way");
     assert_eq!(side("from = [1.0, 1.25], to = [0.0, 1.25], pressure = 1e3"), 1.0);
     assert_eq!(side("circle = { centre = [0.5, 2.0], radius = 0.4 }, pressure = 1e3"), 1.0, "a disc");
-    let hole = "circle = { centre = [2.75, 2.0], radius = 0.1 }, pressure = { value = 0.0, at_y = \"3 m\", per_metre = \"10 kPa/m\" }";
+    let hole = "circle = { centre = [2.75, 2.0], radius = 0.1 }, pressure = { value = 0.0, at_y = \"3 m\", per_metre \
+    = \"10 kPa/m\" }";
     assert_eq!(side(hole), -1.0, "what surrounds it");
     let (line, _, largest) = push(hole);
     assert_eq!(line, LoadedLine::Circle { center: [2.75, 2.0], radius: 0.1 });
@@ -329,7 +330,8 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
     assert!(told(&[&strip("pressure = 1e3")], "traction.0") && !told(&[&lasting, "boundary.bottom=fixed"], ""));
     assert!(told(&[&shear, "boundary.left=absorbing", "boundary.right=absorbing"], "traction.0"));
     let (whole, half) = ("centre = [2, 2], radius = 0.5", "centre = [2, 3], radius = 0.5");
-    let hole = "body.0.subtract=[{ circle = { centre = [2, 2], radius = 0.5 } }, { circle = { centre = [2, 3], radius = 0.5 } }]";
+    let hole = "body.0.subtract=[{ circle = { centre = [2, 2], radius = 0.5 } }, { circle = { centre = [2, 3], radius \
+    = 0.5 } }]";
     let round = |circle: &str| format!("traction.0={{ circle = {{ {circle} }}, pressure = 1e3, ramp = 0.1 }}");
     assert!(!told(&[hole, &round(whole), "body.0.box.upper=[4, 4]"], ""));
     assert!(told(&[hole, &round(half), "grid.upper=[4, 3]"], "traction.0"));

@@ -223,16 +223,18 @@ fn words_of_retired_keys_that_change_nothing_are_read_with_a_warning() {
     for (set, told) in [
         (
             "solver.background_kind=strain",
-            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete it.",
+            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete \
+             it.",
         ),
         (
             "solver.background_kind=laplacian",
-            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete it.",
+            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete \
+             it.",
         ),
         (
             "solver.background_cells=occupied",
-            "solver.background_cells: this key has no effect any more, as all occupied cells always have the background. \
-             Delete it.",
+            "solver.background_cells: this key has no effect any more, as all occupied cells always have the \
+             background. Delete it.",
         ),
     ] {
         let case = valid(STATIC, &[set]);
@@ -254,8 +256,8 @@ fn words_of_retired_keys_that_were_removed_are_refused_with_what_replaces_them()
             let errors = set(text, &[&format!("{key}={word}")]).unwrap_err();
             let [error] = &errors[..] else { panic!("{errors:?}") };
             let told = format!(
-                "\"{word}\" was removed after bsmpm 0.1.0, commit c1b20825. Delete the key: solver.extension = \"linear\", \
-                 the default in quasi-static analysis, replaces it."
+                "\"{word}\" was removed after bsmpm 0.1.0, commit c1b20825. Delete the key: solver.extension = \
+                 \"linear\", the default in quasi-static analysis, replaces it."
             );
             assert_eq!((error.key.as_str(), &error.message), (key, &told));
             assert_eq!(error.removed.map(|removed| removed.word), Some(word));

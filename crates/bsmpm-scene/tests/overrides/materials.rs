@@ -215,8 +215,8 @@ fn a_material_without_cohesion_may_close_its_gaps() {
 /// Modified Cam-clay: its numbers, by the height too, where its linear moduli hold, and what it needs to begin with.
 #[test]
 fn cam_clay_and_its_start() {
-    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"modified-cam-clay\", kappa_star = 0.02, lambda_star = 0.1, \
-                critical_state_ratio = 1.2";
+    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"modified-cam-clay\", kappa_star = 0.02, \
+    lambda_star = 0.1, critical_state_ratio = 1.2";
     let whole = ["strength_reduction.factor=1.0", "initial.k0=0.5"];
     let with = |text: &str| set(FULL, &[&whole[..], &[&format!("material.clay={{ {keys}, {text} }}")]].concat());
     let case = with("ocr = 2").expect("a valid case");
