@@ -8,7 +8,7 @@ use crate::report::{Report, shortened};
 use crate::schema::{Kind, Range, Words};
 use crate::unit::{self, Dimension};
 use crate::words::Geometry;
-use bsmpm_messages::with_context;
+use bsmpm_messages::{code_of, with_context};
 
 /// Rows of a list that are wrong one after the other, behind which the rest is not looked at.
 const WRONG_ROWS: usize = 3;
@@ -327,6 +327,7 @@ impl ValueReader<'_, '_> {
         }
         let meant = words.misnomers.iter().find(|(word, _)| word == text);
         let near = match (meant, hint(text, words.words())) {
+            (Some((_, meant)), _) if code_of(meant).is_some() => return self.fail(node, *meant),
             (Some((_, meant)), _) => format!(". {meant}."),
             (None, hint) if hint.is_empty() => ".".to_owned(),
             (None, hint) => hint,

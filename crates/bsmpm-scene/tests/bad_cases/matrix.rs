@@ -310,7 +310,7 @@ const MATRIX: &[Input] = &[
             "density  = \"2 t/m3\"",
             "unit_weight = 2e4\ndensity = 2000",
             "material.sand.density",
-            "`unit_weight` is given too; only one of",
+            "`unit_weight` is given too",
         )
         .down(1)],
         taken: &[

@@ -204,7 +204,7 @@ pub const RULES: &[Row] = &[
     row("dt   = ", "spectral_radius = 1\nnewmark_gamma = 0.5\ndt   = ", "analysis.newmark_gamma", "E0016").down(1),
     row("dt   = \"10 ms\"\n", "", "analysis", "none of the keys dt, steps").up(3),
     row("end  = \"1 s\"\n", "", "analysis.end", "missing; a dynamic analysis").up(2),
-    row("density  = \"2 t/m3\"", "density = 1\nunit_weight = 2", "material.sand.density", "only one of"),
+    row("density  = \"2 t/m3\"", "density = 1\nunit_weight = 2", "material.sand.density", "E0016"),
     row("density  = \"2 t/m3\"", "", "material.sand", "a dynamic analysis needs mass").up(7),
     row("format = \"vtu\"", "every_steps = 5", "output.every_steps", "`every` is given too"),
     row("cell  = [0.5, \"50 cm\"]", "cell = 0.5\nknots.x = [0, 1]", "grid.knots", "E0016").down(1),

@@ -99,15 +99,15 @@ fn errors_cite_the_override() {
         ("grid.cell=5 s", "grid.cell", "unit of time"),
         ("grid.cel=5 mm", "grid.cel", "did you mean `cell`?"),
         ("body.6.points_per_cell=3", "body.6", "missing"),
-        ("body.9.points_per_cell=3", "body.9.points_per_cell", "index 9 is beyond the list of 6"),
+        ("body.9.points_per_cell=3", "body.9.points_per_cell", "has no item 9: it has 6 items"),
         (
             "body.x.points_per_cell=3",
             "body.x.points_per_cell",
-            "`x` is no index of a list, which counts its 6 items from 0",
+            "`x` is not the number of an item. The list has 6 items",
         ),
         ("shaking.acceleration.file=a.csv", "shaking.acceleration.file", "not by --set: name it there, or set rows"),
         ("shaking={acceleration={file=\"a.csv\"}}", "shaking.acceleration", "not by --set: name it there"),
-        ("title.x=3", "title.x", "which is no table"),
+        ("title.x=3", "title.x", "not a table"),
         ("grid.cell", "", "expected KEY=VALUE"),
         ("grid..cell=1", "grid..cell", "E0025"),
         ("=1", "", "E0025"),
@@ -223,17 +223,17 @@ fn words_of_retired_keys_that_change_nothing_are_read_with_a_warning() {
     for (set, told) in [
         (
             "solver.background_kind=strain",
-            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete \
+            "W0001: solver.background_kind: this key has no effect any more: the background always resists strain. Delete \
              it.",
         ),
         (
             "solver.background_kind=laplacian",
-            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete \
+            "W0001: solver.background_kind: this key has no effect any more: the background always resists strain. Delete \
              it.",
         ),
         (
             "solver.background_cells=occupied",
-            "solver.background_cells: this key has no effect any more, as all occupied cells always have the \
+            "W0001: solver.background_cells: this key has no effect any more: all occupied cells always have the \
              background. Delete it.",
         ),
     ] {
@@ -256,7 +256,7 @@ fn words_of_retired_keys_that_were_removed_are_refused_with_what_replaces_them()
             let errors = set(text, &[&format!("{key}={word}")]).unwrap_err();
             let [error] = &errors[..] else { panic!("{errors:?}") };
             let told = format!(
-                "\"{word}\" was removed after bsmpm 0.1.0, commit c1b20825. Delete the key: solver.extension = \
+                "the value \"{word}\" was removed after bsmpm 0.1.0, commit c1b20825. Delete the key: solver.extension = \
                  \"linear\", the default in quasi-static analysis, replaces it."
             );
             assert_eq!((error.key.as_str(), &error.message), (key, &told));
@@ -316,7 +316,7 @@ fn the_linear_solver_that_is_left_open_is_chosen_by_size_and_explained() {
     assert_eq!(chosen(&[LARGE, "solver.reproducible=false", "solver.linear=direct"]).0, direct);
     for (wrong, why) in [
         (&["solver.linear=multigird"][..], "did you mean `multigrid`?"),
-        (&["solver.linear=multigrid", "solver.linear.ksp=preonly"], "which is no table"),
+        (&["solver.linear=multigrid", "solver.linear.ksp=preonly"], "not a table"),
         (&["solver.linear=7"], "\"direct\""),
     ] {
         let errors = set(STATIC, wrong).unwrap_err();
