@@ -124,8 +124,8 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         if cells.len() != expected {
             let found = cells.len();
             return Err(bad(format!(
-                "E0028: line {number} has not {expected} columns but {found}. Give all rows as many columns as the \
-                 first."
+                "E0028: line {number} has {found} columns where {expected} are expected. Give all rows the same number of \
+                 columns."
             )));
         }
         if along.is_some() && expected != 2 {
@@ -296,7 +296,7 @@ mod tests {
         );
         assert_eq!(
             message("0,1\n2", None),
-            "E0028: line 2 has not 2 columns but 1. Give all rows as many columns as the first."
+            "E0028: line 2 has 1 columns where 2 are expected. Give all rows the same number of columns."
         );
         assert_eq!(message("t, ax\n", None), "E0028: the data file has no row of numbers. Check its name.");
         assert_eq!(

@@ -74,7 +74,7 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
                     words.filter_map(|word| word.parse().ok()).filter(|at: &f64| at.is_finite()).collect();
                 if numbers.len() != 3 {
                     return Err(bad(format!(
-                        "E0031: the vertex in line {} of the STL file has not three numbers. Export it again.",
+                        "E0031: the vertex in line {} of the STL file does not have three numbers. Export it again.",
                         number + 1
                     )));
                 }
@@ -86,7 +86,7 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
             }
             Some("endfacet") => {
                 return Err(bad(format!(
-                    "E0031: the facet that ends in line {} of the STL file has not three vertices. Export it again.",
+                    "E0031: the facet that ends in line {} of the STL file does not have three vertices. Export it again.",
                     number + 1
                 )));
             }

@@ -299,7 +299,7 @@ pub const QUASI_STATIC: &[Row] = &[
         "[output]",
         "[[prescribed]]\nface = \"top\"\npath = [[\"1 s\", 0, 0], [\"2 s\", 0, 1]]\n[output]",
         "prescribed.0.path",
-        "column 1 of all 2 rows: found \"1 s\"; quasi-static time is a E0023: a number",
+        "column 1 of all 2 rows: \"1 s\" has a unit, but time is a dimensionless pseudo-time",
     )
     .down(2),
     row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "there is no [footing]")

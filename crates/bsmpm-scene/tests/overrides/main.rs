@@ -105,10 +105,10 @@ fn errors_cite_the_override() {
             "body.x.points_per_cell",
             "`x` is not the number of an item. The list has 6 items",
         ),
-        ("shaking.acceleration.file=a.csv", "shaking.acceleration.file", "not by --set: name it there, or set rows"),
-        ("shaking={acceleration={file=\"a.csv\"}}", "shaking.acceleration", "not by --set: name it there"),
+        ("shaking.acceleration.file=a.csv", "shaking.acceleration.file", "E0027"),
+        ("shaking={acceleration={file=\"a.csv\"}}", "shaking.acceleration", "E0027"),
         ("title.x=3", "title.x", "not a table"),
-        ("grid.cell", "", "expected KEY=VALUE"),
+        ("grid.cell", "", "E0025"),
         ("grid..cell=1", "grid..cell", "E0025"),
         ("=1", "", "E0025"),
         ("grid.cell=[1", "grid.cell", "E0025"),
@@ -264,7 +264,7 @@ fn words_of_retired_keys_that_were_removed_are_refused_with_what_replaces_them()
         }
     }
     let errors = set(STATIC, &["solver.background_kind=bending"]).unwrap_err();
-    assert!(errors.len() == 1 && errors[0].message.starts_with("expected one of \"strain\""), "{errors:?}");
+    assert!(errors.len() == 1 && errors[0].message.contains("expected one of \"strain\""), "{errors:?}");
     assert_eq!(errors[0].removed, None);
     let errors = set(STATIC, &["solver.background_sort=strain"]).unwrap_err();
     assert!(errors.iter().all(|error| !error.message.contains("background_kind")), "not recommended: {errors:?}");
