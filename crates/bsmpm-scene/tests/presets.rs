@@ -206,7 +206,7 @@ fn errors_have_a_place() {
     assert!(errors.iter().any(|error| error.key == "grid.cell" && at_the_word(error)), "{errors:?}");
     let without = COLUMN.replace("lower = [0.0, 0.0]\nupper = [0.55, 0.1025]\n", "");
     let errors = read(&without, &[]).unwrap_err();
-    assert!(errors.iter().any(|error| error.message.contains("missing: one of cell, knots")), "{errors:?}");
+    assert!(errors.iter().any(|error| error.message.contains("none of the keys cell, knots")), "{errors:?}");
 }
 
 /// m  the breakpoints of an axis, in the case's coordinates

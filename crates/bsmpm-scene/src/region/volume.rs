@@ -62,8 +62,8 @@ impl Volume {
         // A factor below zero: cells that seem whole hold more than the body.
         if matches!(made.filling, Filling::Lattice { .. }) && (unseen || made.scale() <= 0.0) {
             return Err(
-                "E0231: the shape is too thin for these cells: its volume cannot be measured. Use smaller cells, or \
-                 thicker walls."
+                "E0037: the shape is so thin that it lies between the lines on which its volume is computed. Use \
+                 smaller cells, or make it thicker."
                     .into(),
             );
         }
@@ -251,6 +251,11 @@ impl Filling {
             let [across, up] = plane(along);
             let plane =
                 GridSpec { axes: vec![axes[across].clone(), axes[up].clone()], order: 1, lines: Default::default() };
+            let Some((section, _)) = whole.along(along) else {
+                return Err(
+                    "E0099: the cross-section of a prism was not found. Report this defect of the program.".to_owned()
+                );
+            };
             let lower = plane.lower();
             let ends = bounds.map(|corner| corner[along]);
             let bounds = bounds.map(|corner| [corner[across] + lower[0], corner[up] + lower[1]]);
@@ -263,8 +268,8 @@ impl Filling {
         let rows = reached(&axes[2], [lower[2], upper[2]]).len() * n;
         if lines * (edges(whole) + cut.iter().map(edges).sum::<usize>() + rows) as u128 > MOST_WORK {
             return Err(
-                "E0216: the shape fills so many cells that placing the material points takes too long. Use larger \
-                 cells."
+                "E0036: the shape has so many cells that generating its material points would take too long. Use \
+                 larger cells."
                     .into(),
             );
         }

@@ -38,16 +38,12 @@ const MATRIX: &[Input] = &[
             "young    = \"20 MPa\"\n",
             "",
             YOUNG_KEY,
-            "missing; it is a number (Pa) or a string with a unit",
+            "this key is missing. Add it; its value is a number (Pa) or a string with a unit",
         )
         .up(2)],
         ..NONE
     },
-    Input {
-        id: "I04",
-        refused: &[row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "no valid TOML: duplicate key").down(1)],
-        ..NONE
-    },
+    Input { id: "I04", refused: &[row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "E0005").down(1)], ..NONE },
     Input {
         id: "I08",
         refused: &[
@@ -66,14 +62,9 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I09",
         refused: &[
-            row(
-                POISSON,
-                "poisson = 0.5",
-                "material.sand.poisson",
-                "0.5 is out of range; allowed: -1 < poisson < 0.5 (at 0.5",
-            ),
-            row(POISSON, "poisson = 0.5000001", "material.sand.poisson", "allowed: -1 < poisson < 0.5"),
-            row(POISSON, "poisson = -1", "material.sand.poisson", "-1 is out of range"),
+            row(POISSON, "poisson = 0.5", "material.sand.poisson", "0.5 is out of range; (-1 < poisson < 0.5 (at 0.5"),
+            row(POISSON, "poisson = 0.5000001", "material.sand.poisson", "(-1 < poisson < 0.5"),
+            row(POISSON, "poisson = -1", "material.sand.poisson", "-1 is outside the allowed range"),
             row(POISSON, "poisson = -1.5", "material.sand.poisson", "-1.5 is out of range"),
         ],
         taken: &[
@@ -87,21 +78,21 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I10",
         refused: &[
+            row("\"30 deg\"", "-1", "material.sand.friction_angle", "-1 is out of range; (0 <= friction_angle < 90"),
+            row("\"30 deg\"", "90", "material.sand.friction_angle", "90 is out of range; (0 <= friction_angle < 90"),
             row(
-                "\"30 deg\"",
-                "-1",
-                "material.sand.friction_angle",
-                "-1 is out of range; allowed: 0 <= friction_angle < 90",
+                "dilation_angle = 5",
+                "dilation_angle = 30.1",
+                "material.sand.dilation_angle",
+                "30.1 is out of range; (0 <= dilation_angle <= friction_angle = 30",
             ),
             row(
-                "\"30 deg\"",
-                "90",
-                "material.sand.friction_angle",
-                "90 is out of range; allowed: 0 <= friction_angle < 90",
+                "dilation_angle = 5",
+                "dilation_angle = -1",
+                "material.sand.dilation_angle",
+                "-1 is outside the allowed range",
             ),
-            row("dilation_angle = 5", "dilation_angle = 30.1", "material.sand.dilation_angle", "E0308"),
-            row("dilation_angle = 5", "dilation_angle = -1", "material.sand.dilation_angle", "-1 is out of range"),
-            row("\"1 kPa\"", "\"-1 kPa\"", "material.sand.cohesion", "allowed: cohesion >= 0"),
+            row("\"1 kPa\"", "\"-1 kPa\"", "material.sand.cohesion", "(cohesion >= 0"),
         ],
         taken: &[
             ("cohesion    = 2e4", "cohesion = 0", "W0309: material.clay: "),
@@ -118,8 +109,8 @@ const MATRIX: &[Input] = &[
                 "body.0.box.upper",
                 "is not above lower = [0.0, 0.0] along each axis",
             ),
-            row("upper = [4.0, 1.0] }", "upper = [4.0, 1e-12] }", "body.0.box.upper", "E0219"),
-            row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "allowed: radius > 0"),
+            row("upper = [4.0, 1.0] }", "upper = [4.0, 1e-12] }", "body.0.box.upper", "it has no points"),
+            row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "(radius > 0"),
         ],
         refused_static: &[row("[[body]]\nmaterial", "[[bodies]]\nmaterial", "bodies", "unknown key `bodies`")],
         ..NONE
@@ -205,14 +196,14 @@ const MATRIX: &[Input] = &[
                 "prescribed.1.path",
                 "E0402 .. t = 0.5 .. 1 in the row before",
             ),
-            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[]", "prescribed.1.path", "E0435 .. [t, ux, uy]"),
-            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "E0435"),
             row(
                 "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
-                "[[1.0, 0, nan]]",
+                "[]",
                 "prescribed.1.path",
-                "nan is no finite number",
+                "a path needs at least one row [t, ux, uy] with t > 0",
             ),
+            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "at least one row"),
+            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1.0, 0, nan]]", "prescribed.1.path", "nan is E0010"),
             row(
                 "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
                 "[[1e-300, 0, 0]]",
@@ -227,13 +218,8 @@ const MATRIX: &[Input] = &[
         id: "I18",
         refused: &[
             row("end  = \"1 s\"", "end = \"-1 s\"", "analysis.end", "\"-1 s\" is out of range; allowed: end > 0"),
-            row("\"10 ms\"", "1.5", "analysis.dt", "dt = 1.5, is longer than the analysis, end = 1"),
-            row(
-                "dt   = \"10 ms\"",
-                "steps = 0",
-                "analysis.steps",
-                "0 is out of range; allowed: 1 <= steps <= 1000000000",
-            ),
+            row("\"10 ms\"", "1.5", "analysis.dt", "1.5 is out of range; allowed: dt <= end = 1"),
+            row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "0 is out of range; (1 <= steps <= 1000000000"),
             row("dt   = \"10 ms\"", "steps = 1_000_000_000_000", "analysis.steps", "1000000000000 is out of range"),
             row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps until the end (at most 1e9)"),
             row("every  = \"0.1 s\"", "every = 0", "output.every", "0 is out of range; allowed: every > 0"),
@@ -283,7 +269,7 @@ const MATRIX: &[Input] = &[
                 "factor = 1.25",
                 "factor = -1.25",
                 "strength_reduction.factor",
-                "-1.25 is out of range; allowed: 0.1 <= factor <= 100",
+                "-1.25 is out of range; (0.1 <= factor <= 100",
             ),
             row("factor = 1.25", "factor = 0", "strength_reduction.factor", "0 is out of range"),
         ],
@@ -309,7 +295,7 @@ const MATRIX: &[Input] = &[
             "density  = \"2 t/m3\"",
             "unit_weight = 2e4\ndensity = 2000",
             "material.sand.density",
-            "`unit_weight` is given too; only one of",
+            "`unit_weight` is given too",
         )
         .down(1)],
         taken: &[

@@ -39,9 +39,9 @@ pub const STAGES: &[Row] = &[
     row("factor = 1.25", "factor = 1.25\nsteps = 5", "strength_reduction.steps", "E0631").down(1),
     row("factor = 1.25", "factor = 1.25\ndrainage = \"undrained\"", "strength_reduction.drainage", "E0631").down(1),
     row("factor = 1.25", "factor = 1.25\nsteps = 1001", "strength_reduction.steps", "0 <= steps <= 1000").down(1),
-    row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "E0621"),
-    row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "E0620"),
-    row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "out of range"),
+    row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
+    row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),
+    row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "E0010"),
     row("name     = \"fill\"", "name = \"a b\"", "body.5.name", "expected a name"),
     row(
         "[[stage]]\nname",
@@ -149,7 +149,8 @@ pub const STAGES_OF_ONE: &[Row] = &[
         "points_per_cell = 3",
         "points_per_cell = 3\n[[point_load]]\nname = \"push\"\nat = [1.0, 0.5]\nforce = [0, -1]\nramp = 1.0\n\
          [[stage]]\nat = 0.5\nmaterials = [{ from = \"soil\", to = \"soft\" }]\n\
-         [material.soft]\nmodel = \"modified-cam-clay\"\nkappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = 1\n\
+         [material.soft]\nmodel = \"modified-cam-clay\"\nkappa_star = 0.02\nlambda_star = 0.1\ncritical_state_ratio = \
+         1\n\
          ocr = 1.5\nyoung = 1e6\npoisson = 0.3",
         "stage.0.materials.0.to",
         "E0625",
@@ -213,7 +214,8 @@ pub const STAGES_OF_ONE: &[Row] = &[
     .down(6),
     row(
         "[output]",
-        "[[body]]\nname = \"fill\"\nmaterial = \"soil\"\npoints_per_cell = 3\nbox = { lower = [0, 1], upper = [2, 1.5] }\n\
+        "[[body]]\nname = \"fill\"\nmaterial = \"soil\"\npoints_per_cell = 3\nbox = { lower = [0, 1], upper = [2, \
+         1.5] }\n\
          [[stage]]\nat = 0.5\nadd = [\"fill\"]\n[[traction]]\nfrom = [0, 1]\nto = [2, 1]\npressure = 1e3\n[output]",
         "traction.0.pressure",
         "E0252: traction.0.pressure: at t = 0.5 bodies",
@@ -221,7 +223,8 @@ pub const STAGES_OF_ONE: &[Row] = &[
     .down(11),
     row(
         "[output]",
-        "[[stage]]\nat = 0.5\nboundary = { right = \"roller\" }\n[[history]]\nquantity = \"reaction\"\nface = \"right\"\n\
+        "[[stage]]\nat = 0.5\nboundary = { right = \"roller\" }\n[[history]]\nquantity = \"reaction\"\nface = \
+         \"right\"\n\
          name = \"held\"\n[[history]]\nquantity = \"reaction\"\nface = \"left\"\n[output]",
         "history.1.face",
         "E0646",

@@ -8,8 +8,8 @@ const GRAVITY: &str = "[gravity]\nacceleration = [0.0, -9.81]\n";
 
 /// The level, the line, weights, and what water needs.
 pub const WATER: &[Row] = &[
-    row(LEVEL, "", "water", "missing: one of level, level_path, line, line_path").up(1),
-    row(LEVEL, "level = 0.75\nline = [[0, 1]]", "water.line", "only one of level, level_path, line, line_path").down(1),
+    row(LEVEL, "", "water", "one of level, level_path, line, line_path").up(1),
+    row(LEVEL, "level = 0.75\nline = [[0, 1]]", "water.line", "E0016").down(1),
     row(LEVEL, "level = \"10 kPa\"", "water.level", "expected a length"),
     row(LEVEL, "level = 0.0", "water.level", "nowhere above the grid's lower face"),
     row(LEVEL, "level_path = [[0.5, 1.0], [0.5, 2.0]]", "water.level_path", "E0402 .. t = 0.5"),
@@ -20,8 +20,8 @@ pub const WATER: &[Row] = &[
     row(LEVEL, "level_path = []", "water.level_path", "at least one row"),
     row(LEVEL, "line = [[1.0, 1.0], [0.5, 2.0]]", "water.line", "E0402 .. x = 0.5"),
     row(LEVEL, "line = [[0.0, -1.0], [0.5, -2.0]]", "water.line", "nowhere above the grid's lower face"),
-    row(LEVEL, "level = 0.75\nunit_weight = 0", "water.unit_weight", "allowed: unit_weight > 0").down(1),
-    row(LEVEL, "level = 0.75\nru = 0.3", "water.ru", "unknown key").down(1),
+    row(LEVEL, "level = 0.75\nunit_weight = 0", "water.unit_weight", "(unit_weight > 0").down(1),
+    row(LEVEL, "level = 0.75\nru = 0.3", "water.ru", "E0011").down(1),
     row(GRAVITY, "", "water", "weighs nothing without [gravity]").down(1),
     row("-9.81]", "9.81]", "gravity.acceleration", "is not straight down, which still water needs"),
     row(SATURATED, "saturated_unit_weight = \"18 kN/m3\"", SATURATED_KEY, "E0309"),
@@ -38,9 +38,10 @@ pub const WATER: &[Row] = &[
 ];
 /// Pressure that points carry, beside other water.
 pub const RATIO_AND_WATER: &[Row] = &[
-    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "E0320").down(1),
-    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 1.0", RU, "allowed: 0 < ru < 1").down(1),
-    row("[water]\nlevel = 0.75\n", "[water]\nlevel = 0.75\nru = 0.3\n", "water.ru", "unknown key").down(2),
+    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "[water] gives the pore pressure, too")
+        .down(1),
+    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 1.0", RU, "(0 < ru < 1").down(1),
+    row("[water]\nlevel = 0.75\n", "[water]\nlevel = 0.75\nru = 0.3\n", "water.ru", "E0011").down(2),
 ];
 
 /// Pressure that points carry, beside what it is not right with.

@@ -95,36 +95,36 @@ fn one_of_two_exclusive_keys_removes_the_other() {
 #[test]
 fn errors_cite_the_override() {
     let rows = [
-        ("grid.cell=-1", "grid.cell", "allowed: cell > 0"),
+        ("grid.cell=-1", "grid.cell", "(cell > 0"),
         ("grid.cell=5 s", "grid.cell", "unit of time"),
         ("grid.cel=5 mm", "grid.cel", "did you mean `cell`?"),
         ("body.6.points_per_cell=3", "body.6", "missing"),
-        ("body.9.points_per_cell=3", "body.9.points_per_cell", "index 9 is beyond the list of 6"),
+        ("body.9.points_per_cell=3", "body.9.points_per_cell", "has no item 9: it has 6 items"),
         (
             "body.x.points_per_cell=3",
             "body.x.points_per_cell",
-            "`x` is no index of a list, which counts its 6 items from 0",
+            "`x` is not the number of an item. The list has 6 items",
         ),
-        ("shaking.acceleration.file=a.csv", "shaking.acceleration.file", "not by --set: name it there, or set rows"),
-        ("shaking={acceleration={file=\"a.csv\"}}", "shaking.acceleration", "not by --set: name it there"),
-        ("title.x=3", "title.x", "which is no table"),
-        ("grid.cell", "", "expected KEY=VALUE"),
-        ("grid..cell=1", "grid..cell", "no key path"),
-        ("=1", "", "no key path"),
-        ("grid.cell=[1", "grid.cell", "no valid TOML"),
-        ("a.b.c.d.e.f.g.h=1", "a.b.c.d.e.f.g.h", "no key path"),
+        ("shaking.acceleration.file=a.csv", "shaking.acceleration.file", "E0027"),
+        ("shaking={acceleration={file=\"a.csv\"}}", "shaking.acceleration", "E0027"),
+        ("title.x=3", "title.x", "not a table"),
+        ("grid.cell", "", "E0025"),
+        ("grid..cell=1", "grid..cell", "E0025"),
+        ("=1", "", "E0025"),
+        ("grid.cell=[1", "grid.cell", "E0025"),
+        ("a.b.c.d.e.f.g.h=1", "a.b.c.d.e.f.g.h", "E0025"),
         ("material.mud.young=1", "material.mud.model", "missing"),
         ("footing.interface=soft", "footing.interface", "expected one of \"smooth\", \"rough\""),
         ("strength_reduction.factor=0.01", "strength_reduction.factor", "0.1 <= factor <= 100"),
         ("body.3.subtract.0.circle.radius=0", "body.3.subtract.0.circle.radius", "radius > 0"),
-        ("profile.0.end=1", "profile.0.end", "unknown key"),
+        ("profile.0.end=1", "profile.0.end", "E0011"),
     ];
     for (text, key, says) in rows {
         let errors = set(FULL, &[text]).unwrap_err();
         let fits = |error: &Error| {
             error.place == Place::Override(text.to_owned())
                 && error.key.starts_with(key)
-                && error.message.contains(says)
+                && error.to_string().contains(says)
         };
         assert!(errors.iter().any(fits), "{text}: {errors:#?}");
         assert!(errors[0].to_string().starts_with(&format!("--set {text}: ")), "{}", errors[0]);
@@ -222,16 +222,18 @@ fn words_of_retired_keys_that_change_nothing_are_read_with_a_warning() {
     for (set, reported) in [
         (
             "solver.background_kind=strain",
-            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete it.",
+            "W0001: solver.background_kind: this key has no effect any more: the background always resists strain. Delete \
+             it.",
         ),
         (
             "solver.background_kind=laplacian",
-            "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete it.",
+            "W0001: solver.background_kind: this key has no effect any more: the background always resists strain. Delete \
+             it.",
         ),
         (
             "solver.background_cells=occupied",
-            "solver.background_cells: this key has no effect any more, as all occupied cells always have the background. \
-             Delete it.",
+            "W0001: solver.background_cells: this key has no effect any more: all occupied cells always have the \
+             background. Delete it.",
         ),
     ] {
         let case = valid(STATIC, &[set]);
@@ -252,16 +254,16 @@ fn words_of_retired_keys_that_were_removed_are_refused_with_what_replaces_them()
         for text in [STATIC, FULL] {
             let errors = set(text, &[&format!("{key}={word}")]).unwrap_err();
             let [error] = &errors[..] else { panic!("{errors:?}") };
-            let reported = format!(
-                "\"{word}\" was removed after bsmpm 0.1.0, commit c1b20825. Delete the key: solver.extension = \"linear\", \
-                 the default in quasi-static analysis, replaces it."
+            let told = format!(
+                "the value \"{word}\" was removed after bsmpm 0.1.0, commit c1b20825. Delete the key: solver.extension = \
+                 \"linear\", the default in quasi-static analysis, replaces it."
             );
             assert_eq!((error.key.as_str(), &error.message), (key, &reported));
             assert_eq!(error.removed.map(|removed| removed.word), Some(word));
         }
     }
     let errors = set(STATIC, &["solver.background_kind=bending"]).unwrap_err();
-    assert!(errors.len() == 1 && errors[0].message.starts_with("expected one of \"strain\""), "{errors:?}");
+    assert!(errors.len() == 1 && errors[0].message.contains("expected one of \"strain\""), "{errors:?}");
     assert_eq!(errors[0].removed, None);
     let errors = set(STATIC, &["solver.background_sort=strain"]).unwrap_err();
     assert!(errors.iter().all(|error| !error.message.contains("background_kind")), "not recommended: {errors:?}");
@@ -313,7 +315,7 @@ fn the_linear_solver_that_is_left_open_is_chosen_by_size_and_explained() {
     assert_eq!(chosen(&[LARGE, "solver.reproducible=false", "solver.linear=direct"]).0, direct);
     for (wrong, why) in [
         (&["solver.linear=multigird"][..], "did you mean `multigrid`?"),
-        (&["solver.linear=multigrid", "solver.linear.ksp=preonly"], "which is no table"),
+        (&["solver.linear=multigrid", "solver.linear.ksp=preonly"], "not a table"),
         (&["solver.linear=7"], "\"direct\""),
     ] {
         let errors = set(STATIC, wrong).unwrap_err();

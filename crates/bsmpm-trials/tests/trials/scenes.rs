@@ -330,16 +330,16 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, -100\n");
     named.mpirun(1, &["case.toml", "-q", "--restart", "auto"]).expect(76).says_once("shaking.acceleration was");
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, fast\n");
-    let reported = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
-    reported.says_once("quake.csv: line 3: `fast` is no number");
+    let told = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
+    told.says_once("error E0028: quake.csv: `fast` in line 3 of the data file");
     let lengths: String = (1..=40).map(|row| format!("{row}, 1\n")).collect();
     named.write("quake.csv", format!("t [m], a [cm/s2]\n{lengths}"));
     named
         .mpirun(1, &["case.toml", "-q", "--force"])
         .expect(65)
-        .says_once("column 1 of all 40 rows: `m` is a unit of length");
+        .says_once("error E0021: shaking.acceleration: column 1 of all 40 rows: ");
     std::fs::remove_file(named.path("quake.csv")).unwrap();
-    named.mpirun(2, &["case.toml", "-q", "--force"]).expect(66).says_once("quake.csv: ");
+    named.mpirun(2, &["case.toml", "-q", "--force"]).expect(66).says_once("error E0001: quake.csv: ");
 }
 
 /// A bar of 2 m by 0.5 m that its left end holds and its right end bends, by a stress that grows with depth.
