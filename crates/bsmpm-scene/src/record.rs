@@ -258,7 +258,7 @@ fn exclusive<'a>(
     if let [first, second, ..] = given[..]
         && !reported.contains(&[&first.key, &second.key])
     {
-        told.push([&first.key, &second.key]);
+        reported.push([&first.key, &second.key]);
         let message = format!(
             "E0016: `{}` is given too, but only one of the keys {} is allowed. Delete one of them.",
             first.key,

@@ -178,7 +178,7 @@ fn elastic_soil_that_does_not_lock_gets_no_stabilisation() {
 /// What a word cannot choose it reports, with what that would follow from; what is given needs no choice.
 #[test]
 fn what_cannot_be_chosen_is_reported_at_the_preset() {
-    let told = |text: &str, overrides: &[&str]| {
+    let reports = |text: &str, overrides: &[&str]| {
         let errors = read(text, overrides).unwrap_err();
         let own = errors.into_iter().filter(|error| error.key == "accuracy");
         own.map(|error| error.message).collect::<Vec<String>>()
@@ -190,7 +190,7 @@ fn what_cannot_be_chosen_is_reported_at_the_preset() {
     assert_eq!(reports(&weightless, &["analysis.dt=1e-3"]), [""; 0]);
     let bodiless = COLUMN.replace("box = { lower = [0.0, 0.0], upper = [0.2, 0.1] }\n", "");
     assert_ne!(bodiless, COLUMN);
-    let [cells] = &told(&bodiless, &[])[..] else { panic!("one error") };
+    let [cells] = &reports(&bodiless, &[])[..] else { panic!("one error") };
     assert!(cells.contains("cannot choose grid.cell") && cells.contains("depends on the bodies"), "{cells}");
 }
 
@@ -251,7 +251,7 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
         assert!(x.longest() > 2.5 * edge && y.longest() > 2.5 * edge);
         assert!(case.warnings.is_empty(), "{:?}", case.warnings);
         // Sizes, places and reasons are told.
-        let told: Vec<_> = case.notes.iter().filter(|note| note.key == "grid.knots").collect();
+        let reports: Vec<_> = case.notes.iter().filter(|note| note.key == "grid.knots").collect();
         let [all, zone, rest] = &told[..] else { panic!("{told:?}") };
         assert!(all.reason.contains("cells across the bodies (10 m)") && all.reason.contains(&growth.to_string()));
         assert!(zone.value.contains(&format!("x = 0 to {}, y = {} to {}", 1.0 + reach, 8.0 - reach, 10.0 + reach)));

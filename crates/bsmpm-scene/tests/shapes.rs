@@ -183,12 +183,12 @@ fn a_polygon_along_the_cells_is_a_box() {
 fn walls_thinner_than_points_lie_apart_are_warned_of() {
     let warned = |thick: f64| {
         let wall = format!("polygon = [[2.13, 1], [{}, 1], [{}, 9], [6.13, 9]]", 2.13 + thick, 6.13 + thick);
-        case(METRES, &[&wall], 2).warnings.iter().any(|told| told.starts_with("W0211"))
+        case(METRES, &[&wall], 2).warnings.iter().any(|warning| warning.starts_with("W0211"))
     };
     assert!(warned(0.05) && !warned(1.0));
     let warned = |thick: f64| {
         let wall = format!("box = {{ lower = [2.13, 1], upper = [{}, 9] }}", 2.13 + thick);
-        case(METRES, &[&wall], 2).warnings.iter().any(|told| told.starts_with("W0212"))
+        case(METRES, &[&wall], 2).warnings.iter().any(|warning| warning.starts_with("W0212"))
     };
     assert!(warned(0.45) && !warned(0.5));
 }

@@ -307,7 +307,7 @@ fn the_linear_solver_of_a_solid_is_taken_by_size() {
     let set = [many, "material.sand.poisson=0.49"];
     assert_eq!((on(1, &set).0, on(2, &set).0), ("spline-multigrid".to_owned(), "cholesky".to_owned()));
     let case = Case::from_bytes("round_column", &text, &set.map(str::to_owned)).unwrap();
-    let warned = |ranks| case.warnings_on(ranks).iter().any(|told| told.starts_with("W0235"));
+    let warned = |ranks| case.warnings_on(ranks).iter().any(|warning| warning.starts_with("W0235"));
     assert!(!warned(1) && warned(2));
     let named = [many, set[1], "solver.linear=\"direct\""].map(str::to_owned);
     let named = Case::from_bytes("round_column", &text, &named).unwrap();

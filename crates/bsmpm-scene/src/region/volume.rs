@@ -251,11 +251,6 @@ impl Filling {
             let [across, up] = plane(along);
             let plane =
                 GridSpec { axes: vec![axes[across].clone(), axes[up].clone()], order: 1, lines: Default::default() };
-            let Some((section, _)) = whole.along(along) else {
-                return Err(
-                    "E0099: the cross-section of a prism was not found. Report this defect of the program.".to_owned()
-                );
-            };
             let lower = plane.lower();
             let ends = bounds.map(|corner| corner[along]);
             let bounds = bounds.map(|corner| [corner[across] + lower[0], corner[up] + lower[1]]);

@@ -77,12 +77,7 @@ pub const FLOW: &[Row] = &[
     row("face    = \"bottom\"", "face    = \"top\"", "drain.0.face", "no body of permeable soil lies at the face"),
     row("face    = \"bottom\"", "surface = false", "drain.0.surface", "give face, from and to, circle, or true"),
     row("face    = \"bottom\"\n", "", "drain.0", "the keys face, from, circle, surface").up(2),
-    row(
-        "face    = \"bottom\"",
-        "circle  = { centre = [2.0, 2.0], radius = 9.0 }",
-        "drain.0.circle",
-        "E0201",
-    ),
+    row("face    = \"bottom\"", "circle  = { centre = [2.0, 2.0], radius = 9.0 }", "drain.0.circle", "E0201"),
     row("face    = \"bottom\"", "circle  = { centre = [2.0, 2.0], radius = 1.5 }", "drain.0.circle", "no body is at"),
     row("head    = \"3 m\"", "head = 3\npressure = 0", "drain.0.pressure", "").down(1),
     row("head    = \"3 m\"", "head = \"3 kPa\"", "drain.0.head", "expected a length"),
@@ -147,13 +142,7 @@ pub const FLOW: &[Row] = &[
         "when it begins to act, at the start unless a stage applies it",
     )
     .down(6),
-    row(
-        "[solver]",
-        "[[stage]]\nat = \"1 day\"\nactivate = [\"rai\"]\n[solver]",
-        "stage.0.activate",
-        "E0612",
-    )
-    .down(2),
+    row("[solver]", "[[stage]]\nat = \"1 day\"\nactivate = [\"rai\"]\n[solver]", "stage.0.activate", "E0612").down(2),
     row(
         "[solver]",
         "[[stage]]\nat = \"1 day\"\ndeactivate = [\"base\"]\n[[stage]]\nat = \"2 day\"\ndeactivate = \

@@ -277,7 +277,7 @@ fn thin_walls_are_warned_of() {
         let wall = format!("polygon = [[{inner}, 1.0], [{outer}, 1.0], [{outer}, 2.0], [{inner}, 2.0]]");
         let text = format!("{}revolve = {{ {wall}, about = [1.0, 1.5] }}\n{}", &base[..at], &base[end..]);
         let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
-        warnings.iter().any(|told| told.starts_with(of))
+        warnings.iter().any(|warning| warning.starts_with(of))
     };
     let (factor, alone) = ("W0214: body.3.", "W0211: body.3");
     assert!(warned([0.8, 0.803], factor) && !warned([0.8, 0.95], factor));
@@ -317,7 +317,7 @@ fn a_surface_that_is_turned_inside_out_as_a_whole_is_taken_and_warned_of() {
         .replacen("[5, 3, 4, 5, 3, 6, 5, 5, 4]", "[5, 3, 4, 5, 5, 4, 5, 3, 6]", 1);
     let case = |text: &str| bsmpm_scene::Case::from_text("case.toml", text, &[]).expect("a valid case");
     let warned =
-        |text: &str| case(text).warnings.iter().any(|told| told.starts_with("W0215: body.5.surface.triangles"));
+        |text: &str| case(text).warnings.iter().any(|warning| warning.starts_with("W0215: body.5.surface.triangles"));
     assert!(warned(&turned) && !warned(base));
     assert_eq!(case(&turned).bodies[5].region, case(base).bodies[5].region);
 }

@@ -114,7 +114,7 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
     let (line, _, largest) = push(hole);
     assert_eq!(line, LoadedLine::Circle { center: [2.75, 2.0], radius: 0.1 });
     assert!((largest - 11e3).abs() < 1e-9, "at its lowest place: {largest}");
-    for (traction, told) in [
+    for (traction, reported) in [
         ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "E0252"),
         ("circle = { centre = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "no part of it is inside the grid"),
         ("circle = { centre = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "no body is at"),
@@ -319,7 +319,7 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
     let reports = |set: &[&str], of: &str| {
         let warnings = valid(base, set).warnings;
         let found: Vec<_> = warnings.iter().filter_map(|warning| warning.strip_prefix("W0231: ")).collect();
-        assert!(found.len() <= 1 && found.iter().all(|told| told.starts_with(of)), "{found:?}");
+        assert!(found.len() <= 1 && found.iter().all(|warning| warning.starts_with(of)), "{found:?}");
         !found.is_empty()
     };
     let strip = |push: &str| format!("traction.0={{ from = [0, 3], to = [2, 3], {push} }}");

@@ -254,7 +254,7 @@ fn words_of_retired_keys_that_were_removed_are_refused_with_what_replaces_them()
         for text in [STATIC, FULL] {
             let errors = set(text, &[&format!("{key}={word}")]).unwrap_err();
             let [error] = &errors[..] else { panic!("{errors:?}") };
-            let told = format!(
+            let reported = format!(
                 "the value \"{word}\" was removed after bsmpm 0.1.0, commit c1b20825. Delete the key: solver.extension = \
                  \"linear\", the default in quasi-static analysis, replaces it."
             );

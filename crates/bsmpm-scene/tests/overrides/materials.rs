@@ -67,8 +67,8 @@ fn softening_strengths() {
     let case = with("residual_cohesion = 0, softening_strain = 0.2, band_width = \"5 cm\"").expect("a valid case");
     let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else { panic!() };
     assert!((clay.parameters()[6] - 0.01).abs() < 1e-15, "{:?}", clay.parameters());
-    assert!(!case.warnings.iter().any(|told| told.contains("depend on the cells")));
-    for (text, told) in [
+    assert!(!case.warnings.iter().any(|warning| warning.contains("depend on the cells")));
+    for (text, reported) in [
         ("softening_strain = 0.2", "needs it"),
         ("residual_cohesion = 0, softening_strain = 0", "(softening_strain > 0"),
         (
