@@ -252,7 +252,7 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
         assert!(case.warnings.is_empty(), "{:?}", case.warnings);
         // Sizes, places and reasons are told.
         let reports: Vec<_> = case.notes.iter().filter(|note| note.key == "grid.knots").collect();
-        let [all, zone, rest] = &told[..] else { panic!("{told:?}") };
+        let [all, zone, rest] = &reported[..] else { panic!("{reported:?}") };
         assert!(all.reason.contains("cells across the bodies (10 m)") && all.reason.contains(&growth.to_string()));
         assert!(zone.value.contains(&format!("x = 0 to {}, y = {} to {}", 1.0 + reach, 8.0 - reach, 10.0 + reach)));
         assert!(zone.reason.contains("across footing (2 m wide, half of it modelled)"), "{}", zone.reason);
