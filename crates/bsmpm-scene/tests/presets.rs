@@ -250,9 +250,9 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
         assert!(is_fine(y, [8.0 - reach, 10.0], edge) && is_fine(y, [10.0, 10.0 + reach], edge), "{y:?}");
         assert!(x.longest() > 2.5 * edge && y.longest() > 2.5 * edge);
         assert!(case.warnings.is_empty(), "{:?}", case.warnings);
-        // Sizes, places and reasons are told.
+        // Sizes, places and reasons are reported.
         let reports: Vec<_> = case.notes.iter().filter(|note| note.key == "grid.knots").collect();
-        let [all, zone, rest] = &reported[..] else { panic!("{reported:?}") };
+        let [all, zone, rest] = &reports[..] else { panic!("{reports:?}") };
         assert!(all.reason.contains("cells across the bodies (10 m)") && all.reason.contains(&growth.to_string()));
         assert!(zone.value.contains(&format!("x = 0 to {}, y = {} to {}", 1.0 + reach, 8.0 - reach, 10.0 + reach)));
         assert!(zone.reason.contains("across footing (2 m wide, half of it modelled)"), "{}", zone.reason);
