@@ -73,22 +73,26 @@ pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report
     let read: Vec<_> = read.collect();
     let materials = read.into_iter().collect::<Option<Vec<_>>>()?;
     let is_limited = |named: &NamedMaterial| named.material.yields();
-    let rubs = |side: &Side| root.record("boundary").is_some_and(|faces| faces.record(side.word()).is_some());
-    let rubs = Side::ALL.as_flattened().iter().any(rubs)
+    let is_frictional = |side: &Side| root.record("boundary").is_some_and(|faces| faces.record(side.word()).is_some());
+    let has_friction = Side::ALL.as_flattened().iter().any(is_frictional)
         || root
             .records("rigid")
             .iter()
             .chain(root.records("prescribed"))
             .chain(root.record("footing"))
-            .any(has_friction);
-    if root.gives("strength_reduction") && !around.reduction.elastic && !rubs && !materials.iter().any(is_limited) {
+            .any(is_frictional_record);
+    if root.gives("strength_reduction")
+        && !around.reduction.elastic
+        && !has_friction
+        && !materials.iter().any(is_limited)
+    {
         report.warn(reduction::without_strength("strength_reduction"));
     }
     Some(materials)
 }
 
 /// Whether a rigid body or strip has friction, by what is written of it.
-fn has_friction(record: &Record) -> bool {
+fn is_frictional_record(record: &Record) -> bool {
     let given = |record: &Record| record.number("friction_coefficient").is_some_and(|friction| friction > 0.0);
     given(record) || record.record("components").or(record.record("interface")).is_some_and(given)
 }

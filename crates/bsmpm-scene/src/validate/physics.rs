@@ -270,8 +270,8 @@ pub(super) fn holds_at_rest(case: &Case, component: usize, except: Option<Acting
         Support::Fixed => true,
         Support::Roller => axis == component,
         Support::Contact => {
-            let rubs = case.contacts[axis][usize::from(upper)].is_some_and(|contact| contact.friction > 0.0);
-            axis == component || rubs
+            let has_friction = case.contacts[axis][usize::from(upper)].is_some_and(|contact| contact.friction > 0.0);
+            axis == component || has_friction
         }
         Support::Absorbing | Support::FreeField | Support::Free | Support::Outflow => false,
     };

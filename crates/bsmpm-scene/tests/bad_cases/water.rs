@@ -46,9 +46,9 @@ pub const RATIO_AND_WATER: &[Row] = &[
 
 /// Pressure that points carry, beside what it is not right with.
 pub const RATIO: &[Row] = &[
-    row(WEIGHT, WET_WEIGHT, RU, "nothing weighs without [gravity]").down(1),
-    row("poisson = 0.3\n", ADDED_GRAVITY, RU, "is not straight down").down(2),
-    row("poisson = 0.3\n", ADDED_STAGE, RU, "whatever stages place, take away or exchange").down(2),
+    row(WEIGHT, WET_WEIGHT, RU, "E0321 .. Add [gravity]").down(1),
+    row("poisson = 0.3\n", ADDED_GRAVITY, RU, "E0321 .. vertical gravity").down(2),
+    row("poisson = 0.3\n", ADDED_STAGE, RU, "E0322").down(2),
 ];
 const RU: &str = "material.soil.ru";
 const WEIGHT: &str = "poisson = 0.3\n";
