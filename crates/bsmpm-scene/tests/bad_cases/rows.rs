@@ -222,13 +222,13 @@ pub const RULES: &[Row] = &[
         "cell  = [0.5, \"50 cm\"]",
         "knots.x = [0, 1, 1, 1, 4]\nknots.y = [0, 3]",
         "grid.knots.x",
-        "1 stands 3 times (at most 2)",
+        "1 is listed 3 times (at most 2)",
     ),
     row(
         "cell  = [0.5, \"50 cm\"]",
         "knots.x = [0, 1, 4]\nknots.y = [0, 0, 3]",
         "grid.knots.y",
-        "0 stands 2 times (at most 1)",
+        "0 is listed 2 times (at most 1)",
     )
     .down(1),
     row("cell  = [0.5, \"50 cm\"]", "knots.y = [0, 3]\nknots.x = [0]", "grid.knots.x", "at least two").down(1),
