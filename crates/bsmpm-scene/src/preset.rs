@@ -188,8 +188,8 @@ fn fill_accuracy(
     let filled = filling.filled;
     if filled && record.records("rigid").iter().any(|rigid| rigid.gives("free")) {
         report.warn(format!(
-            "W0201: {ACCURACY}: how far free rigid bodies move is not known in advance. Check that cells are small \
-             compared to them, and that they move less than a cell in a step."
+            "W0201: {ACCURACY}: the motion of free rigid bodies is not known in advance, so steps may be too long. Check \
+             that they move less than a cell in a step."
         ));
     }
     // With a purpose every key may be given because the purpose has filled it in.
@@ -272,8 +272,8 @@ impl Completion<'_, '_> {
     fn doubt(&mut self, thin: Option<(f64, f64)>) {
         if let Some((side, cell)) = thin {
             self.report.warn(format!(
-                "W0203: {ACCURACY}: its cells of {cell} m are fewer than {FEWEST} across a body of {side} m. Stresses \
-                 there are inaccurate. Set grid.cell to at most {} m.",
+                "W0203: {ACCURACY}: a body of {side} m has fewer than {FEWEST} cells across ({cell} m each). Its stresses \
+                 are inaccurate. Set grid.cell to at most {} m.",
                 side / FEWEST
             ));
         }

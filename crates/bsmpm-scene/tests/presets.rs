@@ -156,7 +156,7 @@ fn cells_too_wide_for_a_body_are_warned_of() {
     let lining = "body.1={ material = \"rods\", box = { lower = [0.3, 0.0], upper = [0.315, 0.1] } }";
     let warned = |word: &str| {
         let case = valid(COLUMN, &[&format!("accuracy={word}"), lining]);
-        case.warnings.iter().any(|warning| warning.contains("fewer than 2 across a body of 0.015"))
+        case.warnings.iter().any(|warning| warning.contains("a body of 0.015 m has fewer than 2 cells"))
     };
     assert!(warned("draft") && !warned("standard"));
 }
@@ -255,7 +255,7 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
         let [all, zone, rest] = &reports[..] else { panic!("{reports:?}") };
         assert!(all.reason.contains("cells across the bodies (10 m)") && all.reason.contains(&growth.to_string()));
         assert!(zone.value.contains(&format!("x = 0 to {}, y = {} to {}", 1.0 + reach, 8.0 - reach, 10.0 + reach)));
-        assert!(zone.reason.contains("across footing (2 m wide, half of it modelled)"), "{}", zone.reason);
+        assert!(zone.reason.contains("across `footing` (2 m wide, half of it modelled)"), "{}", zone.reason);
         assert!(rest.value.starts_with("up to ") && rest.value.ends_with(" elsewhere"), "{}", rest.value);
         // Points fill the ground, whose volume does not depend on the cells; the estimate counts them.
         let seeds: Vec<f64> = seed::<PlaneStrain, 2>(&case, 0..x.cells()).map(|seed| seed.volume).collect();

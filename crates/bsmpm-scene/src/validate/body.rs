@@ -65,7 +65,7 @@ fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option
                 "E0217: the axis of rotation has no direction, as all its components are zero. Correct it."
             }
             _ => {
-                "E0207: a body in a plane rotates about the normal of the plane. Delete `axis`, or use geometry = \
+                "E0207: a body in a 2-D case rotates about the normal of the plane. Delete `axis`, or use geometry = \
                  \"3d\"."
             }
         };

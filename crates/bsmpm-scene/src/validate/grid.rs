@@ -67,7 +67,7 @@ fn graded(
     if knots.gives("z") != (dims == 3) {
         let message = match dims {
             3 => "E0206: a 3-D grid needs breakpoints along z. Add knots.z.",
-            _ => "E0207: a grid in a plane has no z axis. Delete knots.z, or use geometry = \"3d\".",
+            _ => "E0207: a 2-D grid has no z axis. Delete knots.z, or use geometry = \"3d\".",
         };
         knots.error("z", message, report);
         return None;
@@ -85,7 +85,7 @@ fn graded(
         let (last, most) = (copies.len() - 1, |i: usize| if i == 0 || i == copies.len() - 1 { 1 } else { order });
         if let Some(torn) = (0..=last).find(|&i| copies[i].len() > most(i)) {
             let message = format!(
-                "E0209: the breakpoint {} stands {} times (at most {}). Delete the repetitions.",
+                "E0209: the breakpoint {} is listed {} times (at most {}). Delete the repetitions.",
                 breakpoints[torn],
                 copies[torn].len(),
                 most(torn)

@@ -207,12 +207,22 @@ pub const RULES: &[Row] = &[
     row("density  = \"2 t/m3\"", "density = 1\nunit_weight = 2", "material.sand.density", "E0016"),
     row("density  = \"2 t/m3\"", "", "material.sand", "a dynamic analysis needs mass").up(7),
     row("format = \"vtu\"", "every_steps = 5", "output.every_steps", "`every` is given too"),
-    row("cell  = [0.5, \"50 cm\"]", "cell = 0.5\nknots.x = [0, 1]", "grid.knots", "E0016").down(1),
-    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 2, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "must increase"),
-    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 1, 2, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "stands in a row"),
-    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 1, 1, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "1 stands 3 times"),
-    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 1, 4]\nknots.y = [0, 0, 3]", "grid.knots.y", "the ends once")
-        .down(1),
+    row("cell  = [0.5, \"50 cm\"]", "cell = 0.5\nknots.x = [0, 1]", "grid.knots", "only one of cell, knots").down(1),
+    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 2, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "E0208"),
+    row("cell  = [0.5, \"50 cm\"]", "knots.x = [0, 1, 2, 1, 4]\nknots.y = [0, 3]", "grid.knots.x", "E0208"),
+    row(
+        "cell  = [0.5, \"50 cm\"]",
+        "knots.x = [0, 1, 1, 1, 4]\nknots.y = [0, 3]",
+        "grid.knots.x",
+        "1 is listed 3 times (at most 2)",
+    ),
+    row(
+        "cell  = [0.5, \"50 cm\"]",
+        "knots.x = [0, 1, 4]\nknots.y = [0, 0, 3]",
+        "grid.knots.y",
+        "0 is listed 2 times (at most 1)",
+    )
+    .down(1),
     row("cell  = [0.5, \"50 cm\"]", "knots.y = [0, 3]\nknots.x = [0]", "grid.knots.x", "at least two").down(1),
     row(
         "cell  = [0.5, \"50 cm\"]",

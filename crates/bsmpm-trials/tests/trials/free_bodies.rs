@@ -276,15 +276,15 @@ fn bodies_that_approach_each_other_are_warned_of_with_the_distance() {
         let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
         scratch.direct(&[&["case.toml", "--check"], &set[..]].concat()).expect(0).stdout
     };
-    let near = "body.0 and body.1 approach each other, and come within a cell at about t = 0.30";
+    let near = "W0229: body.0 and body.1 come within a cell of each other at about t = 0.30";
     assert!(warned(&[]).contains(near), "{}", warned(&[]));
-    assert!(warned(&[]).contains("about 1.5 cells (1.500e-1 m)"));
+    assert!(warned(&[]).contains("from 1.5 cells (0.15 m) on"));
     for apart in ["body.0.velocity=[-1, 0]", "body.1.velocity=[1, 0]", "body.0.velocity=[0, 2]", "analysis.end=0.2"] {
-        assert!(!warned(&[apart]).contains("approach"), "{apart}");
+        assert!(!warned(&[apart]).contains("W0229"), "{apart}");
     }
     // One falls onto the other, which lies on the bottom.
     let falls = ["gravity={ acceleration = [0, -9.81] }", "boundary.bottom=fixed", "body.0.velocity=[0, 0]"];
     let below = "body.1.box={ lower = [0.5, 0], upper = [2, 0.5] }";
-    assert!(warned(&[&falls[..], &[below]].concat()).contains("approach each other"));
-    assert!(!warned(&falls).contains("approach each other"));
+    assert!(warned(&[&falls[..], &[below]].concat()).contains("W0229"));
+    assert!(!warned(&falls).contains("W0229"));
 }
