@@ -15,9 +15,17 @@ fn main() -> ExitCode {
         Err(error) => {
             // The last line of a validation is its counts, for those who read them there.
             if !matches!(error, Error::NotValid { .. }) {
-                let _ = writeln!(std::io::stderr(), "bsmpm: {}", headed(&error.to_string(), "error"));
+                let _ = writeln!(std::io::stderr(), "bsmpm: {}", printed(&error));
             }
             ExitCode::from(error.exit_code())
         }
+    }
+}
+
+/// An error as it is printed. Each of those of a case says itself that it is one.
+fn printed(error: &Error) -> String {
+    match error {
+        Error::BadCase { .. } => error.to_string(),
+        other => headed(&other.to_string(), "error"),
     }
 }

@@ -38,16 +38,7 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
         let in_file = |error: Error| Error::new(error.kind(), with_context(&error.to_string(), file));
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(in_file)?;
-        let has_ending = |ending: &str| file.to_ascii_lowercase().ends_with(ending);
-        let found = if has_ending(".at2") {
-            Err(Error::new(ErrorKind::InvalidData, PEER))
-        } else if stl::is_binary(&bytes) {
-            stl::triangles(&bytes)
-        } else if has_ending(".stl") && bytes.contains(&0) {
-            Err(stl::broken(&bytes))
-        } else {
-            text_rows(bytes, (along, axes))
-        };
+        let found = rows_of(file, bytes, (along, axes));
         whole.push_str(&found.map_err(in_file)?);
         from = span.end;
     }
@@ -57,6 +48,20 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
 
 /// The axis that a file names, if it does, and those that the geometry has.
 type AxisNames<'a> = (Option<&'a str>, &'a [&'a str]);
+
+/// Rows of a file, whose format follows from its name and its bytes.
+fn rows_of(file: &str, bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
+    let has_ending = |ending: &str| file.to_ascii_lowercase().ends_with(ending);
+    if has_ending(".at2") {
+        Err(Error::new(ErrorKind::InvalidData, PEER))
+    } else if stl::is_binary(&bytes) {
+        stl::triangles(&bytes)
+    } else if has_ending(".stl") && bytes.contains(&0) {
+        Err(stl::broken(&bytes))
+    } else {
+        text_rows(bytes, along)
+    }
+}
 
 /// Rows of whatever text holds them.
 fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
@@ -243,7 +248,7 @@ fn unit(heading: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{grid, rows};
+    use super::{grid, rows, rows_of};
 
     const PLANE: &[&str] = &["x", "y"];
 
@@ -285,6 +290,13 @@ mod tests {
         assert_eq!(parsed, "[[\"0.02 s\",\"3.0 cm/s2\",0.0],]");
         assert_eq!(rows("t a\n1 2", (Some("y"), PLANE)).unwrap(), "[[1.0,0.0,2.0],]");
         assert_eq!(rows("1 2", (Some("y"), &["x", "y", "z"])).unwrap(), "[[1.0,0.0,2.0,0.0],]");
+    }
+
+    #[test]
+    fn a_peer_record_is_refused_with_what_to_do() {
+        let record = b"PEER\nKOBE\nACCELERATION\nNPTS= 2, DT= .01 SEC\n 1.0E-3 2.0E-3\n".to_vec();
+        let message = rows_of("kobe.AT2", record, (None, PLANE)).unwrap_err().to_string();
+        assert!(message.starts_with("E0012: ") && message.contains("t [s], a [g]"), "{message}");
     }
 
     #[test]
