@@ -252,7 +252,7 @@ impl Completion<'_, '_> {
         }
     }
 
-    /// Gives the grid cells, unless it has some, tells their sizes, and gives bodies points to suit them.
+    /// Gives the grid cells, unless it has some, reports their sizes, and gives bodies points to suit them.
     fn cells(&mut self, cells: Option<&Cells>, scene: &PresetScene<'_>, preset: &Preset) {
         let mut points = preset.points;
         match cells {

@@ -178,7 +178,8 @@ impl Outline {
         let columns = outline.columns(grid).len();
         if columns > MOST_COLUMNS {
             return Err(format!(
-                "E0216: the shape spans {columns} columns of cells (at most {MOST_COLUMNS}). Use larger cells."
+                "E0036: the shape spans {columns} columns of cells, but at most {MOST_COLUMNS} are possible. Use \
+                 larger cells."
             ));
         }
         outline.count(grid, points_per_cell);
@@ -250,7 +251,8 @@ fn reached(axis: &GridAxis, [lower, upper]: [f64; 2]) -> Range<usize> {
 fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result<(), String> {
     if edges.len() > MOST_EDGES {
         return Err(format!(
-            "E0216: the shape has {} edges with all its cuts (at most {MOST_EDGES}). Use fewer corners or cuts.",
+            "E0036: the shape has {} edges with those that are cut out, but at most {MOST_EDGES} are possible. Use \
+             fewer corners.",
             edges.len()
         ));
     }
@@ -261,8 +263,8 @@ fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result
     let cells: u128 = edges.iter().map(cut).sum();
     if cells * edges.len() as u128 * points_per_cell as u128 > MOST_WORK {
         return Err(format!(
-            "E0216: {} edges of the shape cut about {cells} cells, so that placing the material points takes too long. \
-             Use fewer edges, or larger cells.",
+            "E0036: the {} edges of the shape cut about {cells} cells, so that generating its material points would \
+             take too long. Use fewer corners or larger cells.",
             edges.len()
         ));
     }

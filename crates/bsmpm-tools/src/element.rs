@@ -57,13 +57,13 @@ pub struct ElementArguments {
     pub set: Vec<String>,
 }
 
-/// Computes the tests and writes their tables and pictures; returns a table of all of them and the files. `told` gets
+/// Computes the tests and writes their tables and pictures; returns a table of all of them and the files. `report` gets
 /// what is doubtful, and why a test ended early.
 ///
 /// # Errors
 /// [`Error::Missing`] and [`Error::BadCase`] before anything is written, [`Error::Usage`] for names of no test;
 /// [`Error::Element`] after all files were written, where a test did not come to its end.
-pub fn run(arguments: &ElementArguments, told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+pub fn run(arguments: &ElementArguments, report: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let path = &arguments.case;
     let mut set = arguments.set.clone();
     set.extend(arguments.material.iter().map(|name| format!("element.*.material={name:?}")));
@@ -83,7 +83,7 @@ pub fn run(arguments: &ElementArguments, told: impl FnMut(&str)) -> Result<(Stri
     if failed.is_empty() {
         return Ok((table(&courses), files));
     }
-    table(&courses).lines().for_each(told);
+    table(&courses).lines().for_each(report);
     Err(Error::Element { failed })
 }
 
@@ -92,11 +92,13 @@ fn chosen(case: &Case, arguments: &ElementArguments) -> Result<Vec<StressPath>, 
     let known: Vec<&str> = case.elements.iter().map(|test| test.name.as_str()).collect();
     let path = arguments.case.display();
     if known.is_empty() {
-        let reason = format!("{path} has no [element.NAME]: no test is told; see `bsmpm element --help`");
+        let reason = format!(
+            "E0851: {path} has no element test. Add a table [element.NAME] with its stages; `bsmpm element --help` has an example."
+        );
         return Err(Error::Usage { reason });
     }
     if let Some(name) = arguments.tests.iter().find(|name| !known.contains(&name.as_str())) {
-        let reason = format!("{path} has no test `{name}` (tests: {})", known.join(", "));
+        let reason = format!("E0852: {path} has no element test `{name}`. Use one of {}.", known.join(", "));
         return Err(Error::Usage { reason });
     }
     let wanted = |name: &String| arguments.tests.is_empty() || arguments.tests.contains(name);

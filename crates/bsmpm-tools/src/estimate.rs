@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use bsmpm_messages::headed;
 use clap::Args;
 
 use crate::launch::command;
@@ -74,13 +75,14 @@ pub struct EstimateArguments {
     pub command: Vec<String>,
 }
 
-/// Estimates; `told` gets a line for every probe. Returns what is to be printed.
+/// Estimates; `announce` gets a line for every probe. Returns what is to be printed.
 ///
 /// # Errors
 /// Those of the command line and the case before anything runs; [`Error::Run`] if the first steps fail; those of files.
-pub fn run(arguments: &EstimateArguments, mut told: impl FnMut(&str)) -> Result<String, Error> {
+pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Result<String, Error> {
     if !(arguments.budget.is_finite() && arguments.budget > 0.0) {
-        return Err(Error::Usage { reason: format!("--budget {}: expected some seconds", arguments.budget) });
+        let reason = format!("E0856: --budget {} is not a time. Give a positive number of seconds.", arguments.budget);
+        return Err(Error::Usage { reason });
     }
     let case = case::parsed(&arguments.case, &case::load(&arguments.case)?, &arguments.set)?;
     let actual = arguments.against.as_deref().map(against::read).transpose()?;
@@ -95,12 +97,14 @@ pub fn run(arguments: &EstimateArguments, mut told: impl FnMut(&str)) -> Result<
     } else {
         let (ranks, command) = (arguments.probed(ranks), &arguments.command()[..]);
         let plan = probe::ProbePlan { case: &case, ranks, command, may_be_whole: !arguments.no_whole };
-        probe::estimate(&plan, &guess, deadline(arguments.budget), &mut told)?
+        probe::estimate(&plan, &guess, deadline(arguments.budget), &mut announce)?
     };
     let mut report = EstimateReport::of(&arguments.case, &case, ranks, (speed, &found));
     if let Some(actual) = actual {
         if actual.text != case.text {
-            told("warning: the run is of another text of the case, or of other overrides");
+            let warning = "W0854: the run to compare with was made of another case, or with other --set. Estimate and result \
+                           differ for that reason, too. Use the case and the --set of the run.";
+            announce(&headed(warning, "warning"));
         }
         report.compare(&actual);
     }

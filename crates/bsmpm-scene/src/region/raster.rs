@@ -5,8 +5,8 @@ use bsmpm::boundary::rigid::Terrain;
 /// Parts of the spacing by which posts may miss their places: rounding of what wrote them.
 const ROUNDING: f64 = 1e-3;
 
-const TOO_FEW: &str =
-    "E0229: the terrain has heights along one line only. Give at least two places along x and two along y.";
+/// Of too few rows for a raster.
+const TOO_FEW: &str = "E0032: a raster needs at least two points along x and two along y. Add rows.";
 
 /// Heights at the posts of a regular raster, and a base under them.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,8 +52,8 @@ impl Raster {
         if count[0].saturating_mul(count[1]) != rows.len() {
             let [x, y] = count;
             return Err(format!(
-                "E0229: {} heights are no regular raster: a spacing of {} m along x and {} m along y needs {x} x {y}. \
-                 Add or delete rows.",
+                "E0032: the {} rows are not a regular raster: spacings of {} m along x and {} m along y need {x} x \
+                 {y} rows. Interpolate them to a raster.",
                 rows.len(),
                 spacing[0],
                 spacing[1]
@@ -67,11 +67,10 @@ impl Raster {
             let is_off = (0..2).any(|axis| (part[axis] - part[axis].round()).abs() > ROUNDING);
             let place = post[1] * count[0] + post[0];
             if is_off || !top[place].is_nan() {
-                let what = if is_off { "lies off the regular raster" } else { "is given twice" };
-                return Err(format!(
-                    "E0229: the height at [{}, {}] {what}. Correct or delete this row.",
-                    row[0], row[1]
-                ));
+                let what =
+                    if is_off { "is not a point of the regular raster of the other rows" } else { "occurs twice" };
+                let [x, y, _] = row;
+                return Err(format!("E0032: the point [{x}, {y}] {what}. Interpolate the rows to a raster."));
             }
             top[place] = row[2];
         }
@@ -86,7 +85,9 @@ impl Raster {
             off <= ROUNDING * self.spacing[axis]
         };
         if self.count != base.count || !near(0) || !near(1) {
-            return Err("E0229: `base` and `top` are given at different places. Give both on the same raster.".into());
+            return Err(
+                "E0032: `base` and `top` are rasters of different points. Interpolate both to the same raster.".into(),
+            );
         }
         Self { base: base.top, ..self }.checked()
     }
@@ -97,11 +98,13 @@ impl Raster {
             let at = [post % self.count[0], post / self.count[0]];
             let [x, y] = [0, 1].map(|axis| self.lower[axis] + at[axis] as f64 * self.spacing[axis]);
             return Err(format!(
-                "E0230: at [{x}, {y}] the top, {top} m, is below the base, {base} m. Correct the heights."
+                "E0033: at [{x}, {y}] the top ({top} m) is below the base ({base} m). Correct the heights."
             ));
         }
         if self.top == self.base {
-            return Err("E0230: the top is at the base everywhere, so the body is empty. Correct the heights.".into());
+            return Err(
+                "E0033: `top` and `base` have the same heights, so that the body is empty. Correct the heights.".into(),
+            );
         }
         Ok(self)
     }
@@ -170,7 +173,7 @@ mod tests {
             assert!((found - top(at[0], at[1])).abs() < 1e-12 && base == 0.5);
         }
         assert_eq!((raster.vertical([12.0, 0.0]), raster.vertical([10.1, -1.1])), (None, None));
-        // The mean of x is 11, of y .5, of x y 5.5.
+        // The mean of x is 11, of y 0.5, of x y 5.5.
         assert!((raster.volume() - 6.0 * (2.5 + 1.1 - 0.1 + 0.05 * 5.5)).abs() < 1e-12);
         let slide = Raster::new(&rows(|x, y| top(x, y) + (x - 10.5).max(0.0)), 0.0).unwrap().on(raster).unwrap();
         assert_eq!(slide.vertical([10.2, 0.0]), None);
@@ -187,13 +190,13 @@ mod tests {
             assert!(message.contains(what), "{message}");
         };
         let mut posts = rows(|_, _| 1.0);
-        says(&posts, 2.0, "is below the base, 2 m");
+        says(&posts, 2.0, "is below the base (2 m)");
         says(&posts, 1.0, "the body is empty");
         posts[7][0] += 0.1;
-        says(&posts, 0.0, "no regular raster");
+        says(&posts, 0.0, "not a regular raster");
         let mut twice = rows(|_, _| 1.0);
         twice[3] = twice[2];
-        says(&twice, 0.0, "is given twice");
-        says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "E0229");
+        says(&twice, 0.0, "occurs twice");
+        says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "two points along x and two along y");
     }
 }

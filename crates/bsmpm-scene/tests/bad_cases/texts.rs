@@ -1,4 +1,4 @@
-//! Texts that are no case at all, and how errors are told (rows I01 to I07, I20, I21).
+//! Texts that are no case at all, and how errors are reported (rows I01 to I07, I20, I21).
 
 use super::{DYNAMIC, STATIC};
 use bsmpm_scene::{Case, Error, MAX_BYTES, Place};
@@ -24,10 +24,10 @@ fn i05_i06_no_text_of_a_case() {
     only(b"# nothing but a comment\n", "the file is empty");
     only(&utf16(STATIC, true), "UTF-16");
     only(&utf16(STATIC, false), "UTF-16");
-    only(&utf16(STATIC, true)[2..], "NUL");
-    only(b"\x7fELF\x02\x01\x00", "line 1 holds a NUL byte");
-    only(b"title = \"a\"\ngeometry = \"\xff\"", "line 2 is no UTF-8");
-    only(&vec![b'#'; MAX_BYTES + 1], "larger than 16777216 bytes");
+    only(&utf16(STATIC, true)[2..], "a NUL byte");
+    only(b"\x7fELF\x02\x01\x00", "line 1 has a NUL byte");
+    only(b"title = \"a\"\ngeometry = \"\xff\"", "line 2 is not UTF-8");
+    only(&vec![b'#'; MAX_BYTES + 1], "has more than 16 MiB");
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn all_errors_come_at_once_in_the_order_of_the_file() {
     let keys: Vec<&str> = errors.iter().map(|error| error.key.as_str()).collect();
     assert_eq!(keys, ["analysis.dt", "material.sand.poisson", "material.sand.poison", "material.clay.poisson"]);
     let errors = refuse(b"a = x\nb = y\nc = \"");
-    assert_eq!(errors.len(), 3, "every line with a syntax error is told: {errors:#?}");
+    assert_eq!(errors.len(), 3, "every line with a syntax error is reported: {errors:#?}");
 }
 
 #[test]
@@ -73,9 +73,9 @@ fn an_error_reads_well() {
     let text = DYNAMIC.replace("poisson     = 0.49", "poisson     = 0.6");
     let error = &refuse(text.as_bytes())[0];
     let line = 1 + text[..text.find("0.6").unwrap()].matches('\n').count();
-    let message = "0.6 is out of range; allowed: -1 < poisson < 0.5 (at 0.5 the material is incompressible and its elastic \
-                   stiffness singular)";
-    assert_eq!(error.to_string(), format!("case.toml:{line}:15: error: material.clay.poisson: {message}"));
+    let message = "0.6 is outside the allowed range (-1 < poisson < 0.5): at 0.5 the material is incompressible and \
+    its elastic stiffness singular.";
+    assert_eq!(error.to_string(), format!("case.toml:{line}:15: error E0010: material.clay.poisson: {message}"));
     let block = format!("{error:#}");
     let lines: Vec<&str> = block.lines().skip(1).collect();
     assert_eq!(lines, [format!("  {line} | poisson     = 0.6"), "     |               ^".to_owned()]);

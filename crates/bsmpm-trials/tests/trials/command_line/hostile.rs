@@ -78,8 +78,8 @@ fn i20_hostile_sizes_are_refused_at_once_in_little_memory() {
         let scratch = Scratch::with_case(COLUMN);
         let arguments: Vec<&str> = ["case.toml"].into_iter().chain(set.iter().flat_map(|set| ["--set", set])).collect();
         let output = scratch.job(Some(2), &arguments).limited(REFUSAL).within(30).run().expect(65);
-        let told: Vec<&str> = output.stderr.lines().filter(|line| line.contains(says)).collect();
-        assert!(told.len() == 1 && told[0].contains(key), "{key}, {says}: {output:#?}");
+        let reported: Vec<&str> = output.stderr.lines().filter(|line| line.contains(says)).collect();
+        assert!(reported.len() == 1 && reported[0].contains(key), "{key}, {says}: {output:#?}");
         output.says_once("nothing was run or written");
         assert_eq!(scratch.entries(), ["case.toml"]);
     }
@@ -148,7 +148,7 @@ fn i22_a_case_that_is_no_file_is_refused_once_with_66_and_not_waited_for() {
 fn i23_more_ranks_than_slabs_and_their_parts_are_refused_once_with_65() {
     let scratch = Scratch::with_case(COLUMN);
     let output = scratch.mpirun(7, &["case.toml"]).expect(65);
-    output.says_once("7 ranks are too many: the grid has 4 columns of 5 cells along y, so at most 4 ranks");
+    output.says_once("the grid has 4 columns of 5 cells, too few for 7 ranks. Use at most 4 ranks");
     assert_eq!(scratch.entries(), ["case.toml"]);
 }
 
