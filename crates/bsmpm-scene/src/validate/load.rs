@@ -239,7 +239,7 @@ fn coarse(path: &str, times: impl Iterator<Item = f64> + Clone, dt: Option<f64>,
 /// Says that the first number of a row, called `name`, is not larger than that of the row before.
 pub(super) fn not_increasing(name: &str, value: f64, before: f64) -> String {
     format!(
-        "E0402: {name} = {value} in this row is not larger than {before} in the row before. Sort the rows, each value once."
+        "E0402: {name} = {value} in this row is not larger than {before} in the row before. Sort the rows, and delete repeated ones."
     )
 }
 

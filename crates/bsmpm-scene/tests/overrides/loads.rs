@@ -407,7 +407,7 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
     let wall = "from=[0, 0], to=[0, 1]";
     let fixed = warned(wall, &[]);
     assert!(
-        fixed.len() == 1 && fixed[0].contains("W0408: prescribed.0 ends at the fixed boundary `bottom`"),
+        fixed.len() == 1 && fixed[0].contains("W0408: `prescribed.0` ends at the fixed boundary `bottom`"),
         "{fixed:?}"
     );
     assert!(warned(wall, &["boundary.bottom=roller", "boundary.right=roller"]).is_empty());
@@ -418,7 +418,7 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
     let inclined = warned("from=[0, 1.4], to=[1, 1.2]", &cone);
     assert!(
         inclined.len() == 1
-            && inclined[0].contains("W0407: prescribed.0 is inclined and ends at the roller boundary `left`"),
+            && inclined[0].contains("W0407: `prescribed.0` is inclined and ends at the roller boundary `left`"),
         "{inclined:?}"
     );
     assert!(warned("from=[0.5, 1.3], to=[1.5, 1.1]", &cone).is_empty());
