@@ -28,8 +28,8 @@ pub const WET: &[Row] = &[
         "drain.0.rectangle",
         "no rectangle",
     ),
-    row("disc     = { centre = [1.0", "disc = { centre = [3.5", "drain.1.disc", "no body is at"),
-    row("upper = [1.0, 3.0, 1.5] }\nrate", "upper = [3.0, 3.0, 1.5] }\nrate", "inflow.0.rectangle", "no body is at"),
+    row("disc     = { centre = [1.0", "disc = { centre = [3.5", "drain.1.disc", "E0512"),
+    row("upper = [1.0, 3.0, 1.5] }\nrate", "upper = [3.0, 3.0, 1.5] }\nrate", "inflow.0.rectangle", "E0512"),
     row("disc = { centre = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "a disc"),
     row(
         "rectangle = { lower = [2.0, 0.0, 0.0], upper = [2.0, 3.0, 1.5] }",
@@ -162,13 +162,8 @@ pub const SOLID: &[Row] = &[
         "stage.0.boundary.bottom",
         "an edge",
     ),
-    row("[gravity]", "[water]\nlevel = 0.0\n[gravity]", "water.level", "lower face, z = 0").down(1),
-    row(
-        "[0.0, 0.0, -9.81]",
-        "[0.0, -1.0, -9.81]\n[water]\nlevel = 1.0",
-        "gravity.acceleration",
-        "is not straight down",
-    ),
+    row("[gravity]", "[water]\nlevel = 0.0\n[gravity]", "water.level", "E0524 .. z = 0 m").down(1),
+    row("[0.0, 0.0, -9.81]", "[0.0, -1.0, -9.81]\n[water]\nlevel = 1.0", "gravity.acceleration", "E0523"),
     row("[gravity]", "[[inflow]]\nfrom = [0, 0]\nto = [1, 1]\nrate = 1e-6\n[gravity]", "inflow.0.from", "or a disc")
         .down(1),
     row("density = 2000", FLOWS, "drain.0.surface", "name a face of the grid").down(7),
