@@ -5,6 +5,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use bsmpm_messages::headed;
 use bsmpm_scene::Case;
 
 use crate::Error;
@@ -12,7 +13,10 @@ use crate::Error;
 /// The bytes of a case file.
 pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
     bsmpm_scene::load(path).map_err(|error| match error.kind() {
-        ErrorKind::InvalidData => Error::BadCase { path: path.to_owned(), errors: vec![error.to_string()] },
+        ErrorKind::InvalidData => {
+            let error = format!("{}: {}", path.display(), headed(&error.to_string(), "error"));
+            Error::BadCase { path: path.to_owned(), errors: vec![error] }
+        }
         _ => Error::unread("case", path)(error),
     })
 }

@@ -105,7 +105,11 @@ impl CompareArguments {
 }
 
 fn number(text: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "a finite number".to_owned())
+    text.trim()
+        .parse()
+        .ok()
+        .filter(|number: &f64| number.is_finite())
+        .ok_or_else(|| "expected a finite number".to_owned())
 }
 
 fn level(text: &str) -> Result<ChartLevel, String> {

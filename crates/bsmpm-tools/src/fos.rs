@@ -233,10 +233,12 @@ impl FosArguments {
         let least = if sought.is_seismic() { 0.0 } else { LEAST };
         // Written so that what is no number is refused, too.
         if !(least < from && from < to && to <= GREATEST) {
-            return usage(format!("--from {from} --to {to}: allowed is {least} < FROM < TO <= {GREATEST}"));
+            return usage(format!(
+                "E0831: --from {from} and --to {to} are not a valid range. Give {least} < FROM < TO <= {GREATEST}."
+            ));
         }
         if !(NARROWEST <= width && width <= to - from) {
-            return usage(format!("--width {width}: allowed is {NARROWEST} <= WIDTH <= TO - FROM"));
+            return usage(format!("E0831: --width {width} is out of range. Give {NARROWEST} <= WIDTH <= TO - FROM."));
         }
         Ok(SearchPlan { from, to, width, softens: false, sought })
     }
@@ -248,7 +250,7 @@ impl FosArguments {
 
 fn line(trial: &FosTrial, sought: Sought) -> String {
     let kept = if trial.kept { ", kept" } else { "" };
-    let early = trial.end.early().map(|(load, reason)| format!(", ended at {load:.3} of the load: {reason}"));
+    let early = trial.end.early().map(|(load, reason)| format!(", stopped at {load:.3} of the load: {reason}"));
     format!(
         "{} {}: displacement {:.4e} after {} iterations, {:.1} s{kept}{}",
         sought.value(),

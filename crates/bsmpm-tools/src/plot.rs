@@ -61,14 +61,15 @@ impl PlotArguments {
 /// A time, as `0.607 s` or a number.
 pub(crate) fn time(text: &str) -> Result<f64, String> {
     let number = text.trim().trim_end_matches('s').trim_end();
-    let time: f64 = number.parse().map_err(|_| "a time is a number of seconds".to_owned())?;
-    if time.is_finite() { Ok(time) } else { Err("a time is finite".to_owned()) }
+    let time: f64 = number.parse().map_err(|_| "expected a time in seconds".to_owned())?;
+    if time.is_finite() { Ok(time) } else { Err("expected a finite time".to_owned()) }
 }
 
 fn ends(text: &str) -> Result<(f64, f64), String> {
     let number = |part: &str| part.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     let ends = text.split_once(',').and_then(|(lower, upper)| Some((number(lower)?, number(upper)?)));
-    ends.filter(|(lower, upper)| lower < upper).ok_or_else(|| "two numbers MIN,MAX, the smaller one first".to_owned())
+    ends.filter(|(lower, upper)| lower < upper)
+        .ok_or_else(|| "expected two numbers MIN,MAX with MIN below MAX".to_owned())
 }
 
 /// Draws the pictures and, unless the run still goes on, names them in its `run.json`, so that `--force` knows them.
@@ -118,7 +119,10 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
     names.extend(curves::draw(&record, reference.as_ref())?);
     names.extend(convergence::draw(&record)?);
     if names.is_empty() {
-        let reason = format!("the run in {} has left no frame, no history and no step yet", record.directory.display());
+        let reason = format!(
+            "E0846: the run in {} has no frame, history or step yet, so there is nothing to draw. Wait for its first output.",
+            record.directory.display()
+        );
         return Err(Error::Missing { reason });
     }
     Ok((record, names))

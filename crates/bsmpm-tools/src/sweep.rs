@@ -91,7 +91,10 @@ pub struct SweepArguments {
 fn share(text: &str) -> Result<f64, String> {
     let (number, unit) = text.trim().strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
     let share = number.trim().parse().map(|number: f64| unit * number);
-    share.ok().filter(|share| *share > 0.0 && share.is_finite()).ok_or_else(|| "a share, e.g. 2% or 0.02".to_owned())
+    share
+        .ok()
+        .filter(|share| *share > 0.0 && share.is_finite())
+        .ok_or_else(|| "expected a share such as 2% or 0.02".to_owned())
 }
 
 /// Sweeps; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
@@ -129,7 +132,7 @@ pub fn run(arguments: &SweepArguments, mut told: impl FnMut(&str)) -> Result<(St
                 written_back(&plan.bytes, &row.set, file)?;
                 files.push(file.clone());
             }
-            None => text += &format!("{} is not written: no setting is good enough\n", file.display()),
+            None => text += &format!("{} is not written, because no setting is accurate enough\n", file.display()),
         }
     }
     Ok((text, files))
@@ -164,7 +167,9 @@ fn refused(point: &Point, batch: &Batch, ranks: usize) -> Option<Outcome> {
         Err(errors) => Some(Outcome::never(RunState::Invalid, errors.join("\n"))),
         Ok(order) => {
             let (needed, allowed) = (order.load(ranks).memory, batch.limits.memory);
-            let reason = || format!("it needs about {:.0} MiB of {:.0} MiB", mebibytes(needed), mebibytes(allowed));
+            let reason = || {
+                format!("it needs about {:.0} MiB, and {:.0} MiB are available", mebibytes(needed), mebibytes(allowed))
+            };
             (needed > allowed).then(|| Outcome::never(RunState::Memory, reason()))
         }
     }
@@ -199,7 +204,12 @@ fn pictures(report: &SweepReport, output: &Path) -> Result<Vec<PathBuf>, Error> 
 
 /// Writes the case with overrides; it is the case that was run, or it is not written.
 fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> {
-    let usage = |reason: String| Error::Usage { reason: format!("--write {}: {reason}", file.display()) };
+    let usage = |reason: String| Error::Usage {
+        reason: format!(
+            "E0841: the best setting cannot be written to {}: {reason}. Change a copy of the case by hand.",
+            file.display()
+        ),
+    };
     let original = String::from_utf8_lossy(bytes);
     let text = write::text(&original, set).map_err(usage)?;
     let name = file.display().to_string();
@@ -207,7 +217,7 @@ fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> 
     let run = case::parsed(file, bytes, set)?;
     let differences = bsmpm_scene::differences(&run.text, &text).map_err(|errors| Error::bad_case(file, &errors))?;
     if let Some(difference) = differences.first() {
-        return Err(usage(format!("the text would be another case than the run: {difference}")));
+        return Err(usage(format!("the written case would differ from the run: {difference}")));
     }
     Ok(atomic::replace(file, |file| file.write_all(text.as_bytes()))?)
 }

@@ -123,11 +123,12 @@ fn parts<'a>(matrix: &'a ValidationMatrix, arguments: &ValidateArguments) -> Res
     if parts.iter().flat_map(|part| &part.rows).any(|row| row.is_judged()) {
         return Ok(parts.into_iter().filter(|part| !part.runs.is_empty()).collect());
     }
-    let depth = if arguments.short { "short " } else { "" };
-    let only =
-        arguments.only.as_ref().map_or(String::new(), |only| format!(" in a study whose title contains \"{only}\""));
     let titles: Vec<&str> = matrix.study.iter().map(|study| study.title.as_str()).collect();
-    let reason = format!("no {depth}row is judged{only}; the studies are: {}", titles.join("; "));
+    let reason = format!(
+        "E0807: the chosen part of the matrix has no row with a reference, so nothing can fail. Change --only or --short; the \
+         studies are: {}",
+        titles.join("; ")
+    );
     Err(Error::Usage { reason })
 }
 

@@ -72,7 +72,10 @@ impl Options {
 }
 
 fn ranks(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|ranks| (1..=100_000).contains(ranks)).ok_or_else(|| "a number from 1 on".to_owned())
+    text.parse()
+        .ok()
+        .filter(|ranks| (1..=100_000).contains(ranks))
+        .ok_or_else(|| "expected a number from 1 to 100000".to_owned())
 }
 
 /// HH:MM:SS
@@ -83,7 +86,7 @@ fn wall(text: &str) -> Result<Duration, String> {
         Some(&[hours, minutes, seconds]) if minutes < 60 && seconds < 60 && hours + minutes + seconds > 0 => {
             Ok(Duration::from_secs(3600 * hours + 60 * minutes + seconds))
         }
-        _ => Err(format!("{text} is no time; expected HH:MM:SS")),
+        _ => Err("expected a duration HH:MM:SS".to_owned()),
     }
 }
 
