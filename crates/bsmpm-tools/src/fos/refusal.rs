@@ -12,7 +12,7 @@ const LOOSEST: f64 = 1e-3;
 pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
     let materials = followed(case, until);
     let any = |holds: fn(&Material) -> bool| materials.iter().any(|named| holds(&named.material));
-    let has_strength = any(Material::yields) || case.rubs_at(acting(case, until));
+    let has_strength = any(Material::yields) || case.has_friction_at(acting(case, until));
     let has_amplitude = until.is_none() && amplitudes(case).any(|rows| !rows.is_empty());
     let never_full = until.is_none() && ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
