@@ -262,7 +262,7 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
     let [x, y, _] = trial.farthest;
     (trial.largest_displacement > DOUBLED * trial.displacement).then(|| {
         format!(
-            "W0801: at {} a few material points near ({x:.2}, {y:.2}) m moved {:.1} times as far as the soil around. They are \
+            "W0801: in the trial {} a few material points near ({x:.2}, {y:.2}) m moved {:.1} times as far as the soil around. They are \
              ignored. Check in ParaView that they are no failure.",
             trial.factor,
             trial.largest_displacement / trial.displacement

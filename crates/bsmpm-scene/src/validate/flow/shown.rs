@@ -33,7 +33,7 @@ const ENOUGH: f64 = 1e-2;
 pub const HELD_WATER: &str = "W0548: pore pressures stay constant during the strength reduction, so the factor of safety \
     of soft clay may be too high. Compare it with that of `bsmpm fos --undrained`.";
 
-/// Load over stiffness up to which ground one cell across was shown to be right; under .5 runs ended early.
+/// Load over stiffness up to which ground one cell across was shown to be right; under 0.5 runs ended early.
 const SHOWN_NARROW: f64 = 0.2;
 
 /// What the whole case says of a flow: refusals of what is not shown to be right with it.
