@@ -69,8 +69,8 @@ pub enum Error {
     },
     /// A trial of a search failed because a rigid body slipped, which says nothing of the ground.
     #[error(
-        "E0826: rigid body `{name}` slips in the trial of the {value} {trial}, held by friction only. The soil does not fail. \
-         Remove the motion from its `free`, or use a [[traction]] instead."
+        "E0826: rigid body `{name}` slips in the trial of the {value} {trial}, held by friction only. The soil \
+         does not fail. Remove the motion from its `free`, or use a [[traction]] instead."
     )]
     LooseBody {
         /// What trials differ by.
@@ -90,7 +90,7 @@ pub enum Error {
         failed: Vec<String>,
     },
     /// No run of several came to its end.
-    #[error("E0834: no run was completed, so there are no results. The table {} gives the reason for each.", table.display())]
+    #[error("E0834: no run was completed, so there are no results. {} gives the reason for each.", table.display())]
     NoResult {
         /// The table of them.
         table: PathBuf,
@@ -122,7 +122,8 @@ impl Error {
     /// That of a directory that holds no run.
     pub(crate) fn no_run(directory: &Path) -> Self {
         let reason = format!(
-            "E0842: {} is not the output directory of a run: it has no run.json. Give a directory that bsmpm-par wrote.",
+            "E0842: {} is not the output directory of a run: it has no run.json. Give a directory that bsmpm-par \
+             wrote.",
             directory.display()
         );
         Self::Missing { reason }

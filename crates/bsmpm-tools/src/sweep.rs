@@ -37,22 +37,23 @@ use study::Point;
 /// Of the files of its tables.
 const NAME: &str = "sweep";
 
-/// What to vary, and what to look at.
+/// What to vary, and what to compare.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Every combination of the values is a run, or with --one-at-a-time the case as it is and each value by itself. The case as it is,
-or --baseline, is always among them. Settings that the case refuses, runs that fail and runs that would not fit into memory are
-reported in the table and end nothing else. Finished runs are kept while their case, solver and launcher are the same; one that
-was stopped or killed goes on from its checkpoint.
+Every combination of the values is a run; with --one-at-a-time, each value alone. The case itself, or
+--baseline, is always among the runs. Invalid settings, failed runs and runs that need too much memory are
+reported in the table, and the others continue. Complete runs of the same case, solver and launcher are reused.
+Stopped runs continue from their checkpoint.
 
-A quantity is a column of history.csv at a time, linear between steps, or at the end. Several names count together: the root
-of the mean square of their relative differences; a name without a time takes that of the next one. factor-of-safety runs
-`bsmpm fos` in the place of each run. The cost is processor seconds, of all ranks.
+A quantity is a column of history.csv at a time (interpolated between steps), or at the end of the run. Several
+names count together by the root mean square of their relative errors; a name without a time takes that of the
+next one. The quantity factor-of-safety runs `bsmpm fos` in place of each run. The cost is the CPU time of all
+ranks.
 
 DIR gets sweep.csv, sweep.json, a picture of error against cost for each quantity, and runs/.
 
-Exit codes: 0 done, whatever the runs gave; 2 command line; 65 the case as it is has errors; 66 no such case; 80 no run came to
-its end.
+Exit codes: 0 done, whatever the runs gave; 2 command line; 65 the case as it is has errors; 66 no such case; 80
+no run was completed.
 
 Examples:
   bsmpm sweep case.toml --vary grid.cell=20mm,10mm,5mm --vary body.*.points_per_cell=2,3,4 --quantity runout@0.607
@@ -60,26 +61,25 @@ Examples:
 pub struct SweepArguments {
     /// The case file
     pub case: PathBuf,
-    /// A key of the case, as --set takes it, with its values; `*` is every item of a list; repeatable
+    /// Key of the case with its values, as for --set; `*` stands for every item of a list; repeatable
     #[arg(long, value_name = "KEY=V1,V2,...", required = true)]
     pub vary: Vec<String>,
-    /// One value at a time, all else as the case has it, instead of every combination
+    /// Vary one value at a time, instead of all combinations
     #[arg(long)]
     pub one_at_a_time: bool,
-    /// What is looked at; repeatable
+    /// Columns of history.csv to compare; repeatable
     #[arg(long, value_name = "NAME[@TIME],...", required = true)]
     pub quantity: Vec<String>,
-    /// What errors are measured against: finest, baseline, extrapolated (over the cells' sizes), the directory of a
-    /// run, or numbers
+    /// Reference for the errors: finest, baseline, extrapolated (over the cell sizes), the directory of a run, or numbers
     #[arg(long, value_name = "REFERENCE", default_value = "finest")]
     pub reference: String,
-    /// The error that is good enough
+    /// Acceptable relative error
     #[arg(long, value_name = "SHARE", default_value = "2%", value_parser = share)]
     pub within: f64,
-    /// What costs are compared with [default: the case as it is]
+    /// Overrides that define the baseline for the costs [default: the case itself]
     #[arg(long, value_name = "KEY=VALUE,...")]
     pub baseline: Option<String>,
-    /// Write the cheapest setting that is good enough, by all quantities, as a case file
+    /// Write the cheapest setting with acceptable errors as a case file
     #[arg(long, value_name = "FILE")]
     pub write: Option<PathBuf>,
     /// How the runs are made.

@@ -29,8 +29,8 @@ const AT: f64 = 1e-9;
 const MOST_PERMEABLE: f64 = 1.0;
 
 /// Message of a key that only pore-water flow uses.
-const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this has no effect. Set `drainage = \"coupled\"` \
-    with `porosity` and `permeability`, or remove this.";
+const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this has no effect. Set `drainage = \
+                            \"coupled\"` with `porosity` and `permeability`, or remove this.";
 
 /// Drainage that the case gives a material.
 fn drainage(root: &Record, material: &Record) -> Option<Drainage> {
@@ -99,8 +99,8 @@ fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64>
     const KEY: &str = "suction";
     let Some(water) = root.record("water").filter(|water| water.gives(KEY)) else { return Some(f64::INFINITY) };
     if !retains {
-        let message = "E0503: no material has a `retention` curve, so the suction has no effect. Give one to the soil above \
-                       the water table, or remove `suction`.";
+        let message = "E0503: no material has a `retention` curve, so the suction has no effect. Give one to the \
+                       soil above the water table, or remove `suction`.";
         water.error(KEY, message, report);
     }
     if ["level", "level_path", "line", "line_path"].iter().all(|key| !water.gives(key)) {
@@ -142,8 +142,8 @@ fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Optio
     }
     for key in FLOWING[known..].iter().filter(|key| record.gives(key)) {
         let message = format!(
-            "E0506: the key has no effect with `drainage = \"{drainage}\"`. Set `drainage = \"coupled\"` for pore-water \
-             flow, or remove the key."
+            "E0506: the key has no effect with `drainage = \"{drainage}\"`. Set `drainage = \"coupled\"` for \
+             pore-water flow, or remove the key."
         );
         record.error(key, message, report);
         failed = true;
@@ -207,8 +207,8 @@ fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[
         ))
     } else if last[1] < residual {
         Some(format!(
-            "E0509: the last saturation, {}, is below the residual saturation, {residual}. Reduce `residual`, or end the \
-             curve at a higher saturation.",
+            "E0509: the last saturation, {}, is below the residual saturation, {residual}. Reduce `residual`, or \
+             end the curve at a higher saturation.",
             last[1]
         ))
     } else {
@@ -228,8 +228,8 @@ fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability
     if let Some(much) = along.into_iter().find(|k| *k > MOST_PERMEABLE) {
         let path = record.path_of("permeability");
         report.warn(format!(
-            "W0501: {path}: {much} m/s is more permeable than gravel (up to {MOST_PERMEABLE} m/s), so the soil would drain \
-             at once. Check the unit; the key is a hydraulic conductivity."
+            "W0501: {path}: {much} m/s is more permeable than gravel (up to {MOST_PERMEABLE} m/s), so the soil \
+             would drain at once. Check the unit; the key is a hydraulic conductivity."
         ));
     }
     let law = record.word_if_given("permeability_law")?.unwrap_or(PermeabilityLaw::Constant);
@@ -296,17 +296,17 @@ impl Ground<'_> {
             let at = &at[..grid.dims()];
             let message = match under {
                 Some(body) => format!(
-                    "E0510: the body at {at:.3?} m is of material `{}`, which has no pore-water flow. Set its `drainage = \
-                     \"coupled\"` with `porosity` and `permeability`.",
+                    "E0510: the body at {at:.3?} m is of material `{}`, which has no pore-water flow. Set its \
+                     `drainage = \"coupled\"` with `porosity` and `permeability`.",
                     self.materials[body.material].name
                 ),
                 None if comes => format!(
-                    "E0511: no body is at {at:.3?} m yet when this begins to act. Give the drain or inflow a `name`, and list it in \
-                     `activate` of the stage that adds the body."
+                    "E0511: no body is at {at:.3?} m yet when this begins to act. Give the drain or inflow a \
+                     `name`, and list it in `activate` of the stage that adds the body."
                 ),
                 None => format!(
-                    "E0512: no body is at {at:.3?} m at the start, nor within half a spacing of material points. Move this \
-                     place to the surface of the soil."
+                    "E0512: no body is at {at:.3?} m at the start, nor within half a spacing of material points. \
+                     Move this place to the surface of the soil."
                 ),
             };
             record.error(key, message, report);
@@ -323,8 +323,8 @@ fn named(root: &Record, report: &mut Report<'_>) {
         let Some(name) = record.text("name") else { continue };
         if drains[..number].iter().any(|other| other.text("name") == Some(name)) {
             let message = format!(
-                "E0513: another drain is also called `{name}`, so histories and stages cannot distinguish them. Give each \
-                 drain its own name."
+                "E0513: another drain is also called `{name}`, so histories and stages cannot distinguish them. \
+                 Give each drain its own name."
             );
             record.error("name", message, report);
         }
@@ -337,8 +337,8 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
         DrainSite::Face(face(record, ground, report)?)
     } else if record.gives("surface") {
         if !record.flag("surface")? {
-            let message = "E0514: `false` selects no surface for the drain. Set `surface = true`, or replace the key by \
-                           `face`, `circle`, or `from` and `to`.";
+            let message = "E0514: `false` selects no surface for the drain. Set `surface = true`, or replace the \
+                           key by `face`, `circle`, or `from` and `to`.";
             record.error("surface", message, report);
             return None;
         }
@@ -381,8 +381,8 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
             record.error("seepage", message, report);
         }
         if record.gives("face") {
-            let message = "E0515: a face of the grid cannot be a seepage face, because water passes it in both directions. \
-                           Replace `face` by `from` and `to` on the body's surface.";
+            let message = "E0515: a face of the grid cannot be a seepage face, because water passes it in both \
+                           directions. Replace `face` by `from` and `to` on the body's surface.";
             record.error("seepage", message, report);
         }
         return Some(Given::Seepage);
@@ -403,8 +403,8 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
     let (at, side) = ([grid.lower(), grid.upper()][usize::from(face.upper)][face.axis], usize::from(face.upper));
     if !ground.permeable().iter().any(|body| (body.region.corners()[side][face.axis] - at).abs() <= slack) {
         let message = format!(
-            "E0516: no body with pore-water flow lies at this face ({} = {at} m). Choose another face, or give the surface \
-             of the soil by `from` and `to` (3-D: `rectangle`).",
+            "E0516: no body with pore-water flow lies at this face ({} = {at} m). Choose another face, or give the \
+             surface of the soil by `from` and `to` (3-D: `rectangle`).",
             ["x", "y", "z"][face.axis]
         );
         record.error("face", message, report);
@@ -430,8 +430,8 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     let shift = |at: [f64; 2]| [0, 1].map(|axis| lower[axis] + at[axis]);
     let pieces: Vec<[[f64; 2]; 2]> = pieces.into_iter().map(|piece| piece.map(shift)).collect();
     if pieces.is_empty() {
-        let message = "E0517: no soil with pore-water flow has a free surface; all of it lies at restrained faces of the \
-                       grid. Give the drain a `face`, or `from` and `to`.";
+        let message = "E0517: no soil with pore-water flow has a free surface; all of it lies at restrained faces \
+                       of the grid. Give the drain a `face`, or `from` and `to`.";
         record.error("surface", message, report);
         return None;
     }

@@ -26,8 +26,8 @@ pub(super) fn read(
     let Some(record) = root.record("water") else {
         for (_, material) in root.named("material") {
             if material.gives("saturated_unit_weight") {
-                let message = "E0520: a saturated unit weight has no effect without a water table. Give `water.level`, or \
-                               remove the key.";
+                let message = "E0520: a saturated unit weight has no effect without a water table. Give \
+                               `water.level`, or remove the key.";
                 material.error("saturated_unit_weight", message, report);
             }
         }
@@ -35,8 +35,8 @@ pub(super) fn read(
     };
     if ["level", "level_path", "line", "line_path"].iter().all(|key| !record.gives(key)) {
         if !super::flow::flows(root) {
-            let message = "E0521: [water] has no water table, and no material has pore-water flow. Give one of `level`, \
-                           `level_path`, `line` and `line_path`, or remove [water].";
+            let message = "E0521: [water] has no water table, and no material has pore-water flow. Give one of \
+                           `level`, `level_path`, `line` and `line_path`, or remove [water].";
             report.error(record.origin, &record.path, message);
         }
         return None;
@@ -44,8 +44,8 @@ pub(super) fn read(
     let table = table(record, (grid?, end), report)?;
     let given = record.number("unit_weight")?;
     if !root.gives("gravity") {
-        let message = "E0522: hydrostatic pressure requires gravity, and the case has none. Add [gravity], or remove the \
-                       water table.";
+        let message = "E0522: hydrostatic pressure requires gravity, and the case has none. Add [gravity], or \
+                       remove the water table.";
         report.error(record.origin, &record.path, message);
     }
     let (acceleration, axes) = (gravity?.acceleration, grid?.dims());
@@ -60,8 +60,8 @@ pub(super) fn read(
     }
     if !(8_000.0..=12_000.0).contains(&given) {
         report.warn(format!(
-            "W0520: {}: {given} N/m3 is unusual for water (8000 to 12000 N/m3), and pore pressures are proportional to it. \
-             Check the unit.",
+            "W0520: {}: {given} N/m3 is unusual for water (8000 to 12000 N/m3), and pore pressures are \
+             proportional to it. Check the unit.",
             record.path_of("unit_weight")
         ));
     }
@@ -88,16 +88,16 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
     let heights = || table.levels().into_iter().flatten();
     if !record.gives("suction") && heights().all(|row| row.1 <= base) {
         let message = format!(
-            "E0524: the water table is nowhere above the bottom of the grid ({axis} = {base} m), so it has no effect. Raise \
-             it, remove [water], or give `suction` for unsaturated soil."
+            "E0524: the water table is nowhere above the bottom of the grid ({axis} = {base} m), so it has no \
+             effect. Raise it, remove [water], or give `suction` for unsaturated soil."
         );
         record.error(key, message, report);
         return None;
     }
     if let Some((t, _)) = heights().find(|(t, _)| end.is_some_and(|end| *t > end)) {
         report.warn(format!(
-            "W0521: {}: the row at t = {t} s is after the end of the run, which does not reach it. Increase `analysis.end`, \
-             or remove the row.",
+            "W0521: {}: the row at t = {t} s is after the end of the run, which does not reach it. Increase \
+             `analysis.end`, or remove the row.",
             record.path_of(key)
         ));
     }
@@ -116,18 +116,20 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
         let wrong = if number < count {
             let message = || {
                 format!(
-                    "E0525: x = {x} m is not greater than x of the row before. List the points of the line with x increasing."
+                    "E0525: x = {x} m is not greater than x of the row before. List the points of the line with x \
+                     increasing."
                 )
             };
             (at > 0 && places[at - 1].x >= x).then(message)
         } else if places[at].x != x || (at > 0 && rows[number - 1].numbers[0] != t) {
             Some(format!(
-                "E0525: at t = {t} s the line has a point x = {x} m that differs from the line of the first time. Repeat the \
-                 same x, in the same order, at each time."
+                "E0525: at t = {t} s the line has a point x = {x} m that differs from the line of the first time. \
+                 Repeat the same x, in the same order, at each time."
             ))
         } else if at == 0 && rows[number - 1].numbers[0] >= t {
             Some(format!(
-                "E0525: t = {t} s is not greater than the time of the line before, {} s. List the lines with t increasing.",
+                "E0525: t = {t} s is not greater than the time of the line before, {} s. List the lines with t \
+                 increasing.",
                 rows[number - 1].numbers[0]
             ))
         } else {
@@ -164,15 +166,15 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
     if let Some(step) = places.windows(2).find(is_step) {
         let [from, to] = [step[0].x, step[1].x];
         report.warn(format!(
-            "W0522: {key}: the drop from x = {from} to {to} m is narrower than a cell ({cell} m), so the soil receives too \
-             little thrust. Extend the drop over at least one cell."
+            "W0522: {key}: the drop from x = {from} to {to} m is narrower than a cell ({cell} m), so the soil \
+             receives too little thrust. Extend the drop over at least one cell."
         ));
     }
     let steepest = places.windows(2).filter(|pair| !is_step(pair)).map(slope).fold(0.0, f64::max);
     if steepest > GENTLE {
         report.warn(format!(
-            "W0523: {key}: its slope is {steepest:.3} (limit {GENTLE}): if water flows along it, pore pressures are {:.0} % \
-             too high. Accept it as conservative, or compute the flow with `drainage = \"coupled\"`.",
+            "W0523: {key}: its slope is {steepest:.3} (limit {GENTLE}): if water flows along it, pore pressures \
+             are {:.0} % too high. Accept it as conservative, or compute the flow with `drainage = \"coupled\"`.",
             100.0 * steepest * steepest / (1.0 + steepest * steepest)
         ));
     }
@@ -182,8 +184,8 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
-        let message = "E0526: [water] and [shaking] cannot be combined, because pore pressures would not follow the shaking. \
-                       Remove [water], and use undrained strengths.";
+        let message = "E0526: [water] and [shaking] cannot be combined, because pore pressures would not follow \
+                       the shaking. Remove [water], and use undrained strengths.";
         report.error(written.origin, &written.path, message);
     }
     for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
@@ -201,8 +203,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let low = case.bodies.iter().map(|body| body.region.corners()[0][up]).fold(f64::INFINITY, f64::min);
     if highest <= low && !written.gives("suction") {
         report.warn(format!(
-            "W0524: water: the water table (up to {highest} m) is below all bodies (from {low} m) and has no effect. Raise \
-             it, or remove [water]."
+            "W0524: water: the water table (up to {highest} m) is below all bodies (from {low} m) and has no \
+             effect. Raise it, or remove [water]."
         ));
     }
     if !case.tractions.is_empty() || !case.point_loads.is_empty() {
@@ -212,8 +214,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let wets = |body: &usize| case.materials[case.bodies[*body].material].saturated.is_some();
     if water.table.moves() && case.stages.iter().any(|stage| stage.add.iter().any(wets)) {
         report.warn(
-            "W0525: water: bodies added by a stage have the saturated weight below the water level of time 0, although the \
-             level moves. Give them a material with the weight that suits their stage.",
+            "W0525: water: bodies added by a stage have the saturated weight below the water level of time 0, \
+             although the level moves. Give them a material with the weight that suits their stage.",
         );
     }
 }
@@ -232,8 +234,8 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
         if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number && is_wet(body))
         {
             let message = format!(
-                "E0528: the soil below the water table has no weight, or is lighter than water ({:.2} kN/m3), and would float. \
-                 Set `saturated_unit_weight`, for example to \"20 kN/m3\".",
+                "E0528: the soil below the water table has no weight, or is lighter than water ({:.2} kN/m3), and \
+                 would float. Set `saturated_unit_weight`, for example to \"20 kN/m3\".",
                 water.unit_weight * 1e-3
             );
             let key = ["saturated_unit_weight", "unit_weight", "density"].into_iter().find(|key| written.gives(key));

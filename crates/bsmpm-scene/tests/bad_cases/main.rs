@@ -25,8 +25,8 @@ const SOLID: &str = include_str!("solid.toml");
 const WET: &str = include_str!("wet.toml");
 const WET_SOLID: &str = include_str!("wet_solid.toml");
 
-/// One malformed case: `find` in the base becomes `put`, and the error of `key`, `moved` lines below, must have the words
-/// `says`, or all of those that ` .. ` separates.
+/// One malformed case: `find` in the base becomes `put`, and the error of `key`, `moved` lines below, must have the
+/// words `says`, or all of those that ` .. ` separates.
 pub struct Row {
     find: &'static str,
     put: &'static str,

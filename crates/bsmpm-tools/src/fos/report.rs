@@ -201,15 +201,15 @@ impl FosReport {
         match (&self.kink, self.criteria[1].first_failed) {
             (_, None) => "",
             (Some(_), _) => {
-                "Use the result by the kink, where displacements start to increase without bound. The other one is a rough \
-                 check; it is too low where soil yields long before it fails.\n"
+                "Use the result by the kink, where displacements start to increase without bound. The other one is \
+                 a rough check; it is too low where soil yields long before it fails.\n"
             }
             (None, _) if self.plan.softens => {
                 "Use the first result. The other one is too low where soil yields long before it fails.\n"
             }
             (None, _) => {
-                "There is no kink. Use the first result, whose criterion is given below. The other one is too low where soil \
-                 yields long before it fails.\n"
+                "There is no kink. Use the first result, whose criterion is given below. The other one is too low \
+                 where soil yields long before it fails.\n"
             }
         }
     }
@@ -262,8 +262,8 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
     let [x, y, _] = trial.farthest;
     (trial.largest_displacement > DOUBLED * trial.displacement).then(|| {
         format!(
-            "W0801: in the trial {} a few material points near ({x:.2}, {y:.2}) m moved {:.1} times as far as the soil around. They are \
-             ignored. Check in ParaView that they are no failure.",
+            "W0801: in the trial {} a few material points near ({x:.2}, {y:.2}) m moved {:.1} times as far as the \
+             soil around. They are ignored. Check in ParaView that they are no failure.",
             trial.factor,
             trial.largest_displacement / trial.displacement
         )
@@ -274,8 +274,8 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
 fn untrusted(trial: &FosTrial) -> Option<String> {
     (!trial.failed_indicators.is_empty()).then(|| {
         format!(
-            "W0802: the last stable trial ({}) has indicators beyond their limits: {}. The result may be wrong by 10 % or more. \
-             Follow the advice in its log.",
+            "W0802: the last stable trial ({}) has indicators beyond their limits: {}. The result may be wrong by \
+             10 % or more. Follow the advice in its log.",
             trial.factor,
             trial.failed_indicators.join(", ")
         )
@@ -288,8 +288,8 @@ fn pulled_sides(mechanism: &Mechanism, sought: Sought) -> Option<String> {
     let sides: Vec<String> = mechanism.pulled.iter().map(side).collect();
     (!sides.is_empty()).then(|| {
         format!(
-            "W0803: the mechanism reaches a side of the grid that is in tension: {}. The {} may be too high. Move this side away, \
-             or use \"contact\" there.",
+            "W0803: the mechanism reaches a side of the grid that is in tension: {}. The {} may be too high. Move \
+             this side away, or use \"contact\" there.",
             sides.join(", "),
             sought.name()
         )
@@ -308,8 +308,8 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
         ));
     } else if kink.is_none() && curve.has_branch() {
         notes.push(
-            "W0805: the displacements after failure form no straight branch, so the band is that of the first failed trial. Use \
-             more load steps for a sharper result."
+            "W0805: the displacements after failure form no straight branch, so the band is that of the first \
+             failed trial. Use more load steps for a sharper result."
                 .to_owned(),
         );
     }
@@ -317,22 +317,22 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
     if !isolated.is_empty() {
         let factors: Vec<String> = isolated.iter().map(f64::to_string).collect();
         notes.push(format!(
-            "W0806: no equilibrium was found at {}, although weaker soil is stable. These trials are ignored. Use more load steps \
-             if they are many.",
+            "W0806: no equilibrium was found at {}, although weaker soil is stable. These trials are ignored. Use \
+             more load steps if they are many.",
             factors.join(", ")
         ));
     }
     let first = coarse.first_failed.and_then(|factor| rows.iter().find(|row| row.trial.factor == factor));
     if let Some(row) = first.filter(|row| row.verdict == Verdict::NoEquilibrium && row.growth <= DOUBLED) {
         notes.push(format!(
-            "W0807: the first failed trial ({}) stopped at {:.2} times the elastic displacement, so the solver may have failed, \
-             not the soil. Use more load steps.",
+            "W0807: the first failed trial ({}) stopped at {:.2} times the elastic displacement, so the solver may \
+             have failed, not the soil. Use more load steps.",
             row.trial.factor, row.growth
         ));
         if !subject.free_bodies.is_empty() {
             notes.push(format!(
-                "W0808: the soil hardly moved in the first failed trial, so a free rigid body may have failed: {}. Look at the \
-                 trial, or use a [[traction]] instead.",
+                "W0808: the soil hardly moved in the first failed trial, so a free rigid body may have failed: {}. \
+                 Look at the trial, or use a [[traction]] instead.",
                 subject.free_bodies.join(", ")
             ));
         }

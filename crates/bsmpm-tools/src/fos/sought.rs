@@ -19,9 +19,9 @@ pub enum PushedSide {
     Left,
     /// Towards the highest x
     Right,
-    /// Towards the lowest y of a solid
+    /// Towards the lowest y (3-D)
     Front,
-    /// Towards the highest y of a solid
+    /// Towards the highest y (3-D)
     Back,
 }
 
@@ -110,15 +110,15 @@ impl Sought {
         let dims = case.grid.dims();
         let is_straight = gravity.acceleration[..dims - 1].iter().all(|part| *part == 0.0);
         if !is_straight || gravity.acceleration[dims - 1] >= 0.0 {
-            let reason = "E0824: gravity.acceleration is not vertically downwards, but --seismic adds the horizontal part. Give \
-                          the vertical component only.";
+            let reason = "E0824: gravity.acceleration is not vertically downwards, but --seismic adds the \
+                          horizontal part. Give the vertical component only.";
             return Some(reason.to_owned());
         }
         if case.geometry == Geometry::Axisymmetric || pushed.direction(case.geometry).is_none() {
             let side = pushed.side();
             return Some(format!(
-                "E0825: the ground cannot be pushed to the {side} in this geometry. Use left or right in plane strain, in 3-D \
-                 also front or back."
+                "E0825: the ground cannot be pushed to the {side} in this geometry. Use left or right in plane \
+                 strain, in 3-D also front or back."
             ));
         }
         None

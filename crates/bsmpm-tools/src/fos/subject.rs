@@ -27,8 +27,8 @@ const SMALL: f64 = 2e-3;
 /// Stiffening by less is none.
 const UNCHANGED: f64 = 1.01;
 /// What the factor of strength that falls with strain is.
-const SOFTENS: &str = "W0809: a material softens, so the factor depends on the size of the cells and on the stiffness of the \
-                       soil. Compare two sizes of cells.";
+const SOFTENS: &str = "W0809: a material softens, so the factor depends on the size of the cells and on the \
+                       stiffness of the soil. Compare two sizes of cells.";
 /// The largest displacement of all points, as a case may record it.
 const QUANTITY: &str = "max-displacement";
 
@@ -126,8 +126,8 @@ impl Subject {
         if let Some(set) = set.iter().map(|set| set.trim_start()).find(|set| set.starts_with("strength_reduction")) {
             let key = set.split('=').next().unwrap_or(set).trim_end();
             let reason = format!(
-                "E0830: --set {key} conflicts with the search, which sets the strength reduction. Remove it; for a stage use \
-                 --stage and --undrained."
+                "E0830: --set {key} conflicts with the search, which sets the strength reduction. Remove it; for a \
+                 stage use --stage and --undrained."
             );
             return Err(Error::Usage { reason });
         }
@@ -252,33 +252,33 @@ impl Subject {
         let stiffness = self.conditions.stiffness;
         let stiffened = (stiffness != 1.0).then(|| {
             format!(
-                "the trials use {stiffness} times the stiffness of the case, so that the geometry stays as drawn; the reported \
-                 displacements are those of its own stiffness"
+                "the trials use {stiffness} times the stiffness of the case, so that the geometry stays as drawn; \
+                 the reported displacements are those of its own stiffness"
             )
         });
         let grown = self.is_grown.then(|| {
             "a load acts at once in the case (ramp = 0); in the trials it increases over the whole run".to_owned()
         });
         let unstressed = self.is_stressed.then(|| {
-            "the trials start without the initial stress of the case ([initial]), because the limit load does not depend on \
-             it (exactly so for associated plasticity)"
+            "the trials start without the initial stress of the case ([initial]), because the limit load does not \
+             depend on it (exactly so for associated plasticity)"
                 .to_owned()
         });
         let staged = self.stage.as_ref().map(|(name, until)| {
             format!(
-                "the strength is reduced from the state at the end of the stage \"{name}\", t = {until}; displacements are those \
-                 since then, added to the elastic displacement"
+                "the strength is reduced from the state at the end of the stage \"{name}\", t = {until}; \
+                 displacements are those since then, added to the elastic displacement"
             )
         });
         let has_friction = self.has_friction.then(|| {
-            "the friction coefficient of interfaces (boundaries, footings, prescribed segments, rigid bodies, terrain) is \
-             reduced by the same factor as the strength"
+            "the friction coefficient of interfaces (boundaries, footings, prescribed segments, rigid bodies, \
+             terrain) is reduced by the same factor as the strength"
                 .to_owned()
         });
         let rigid = self.has_rigid[0].then(|| "rigid bodies themselves cannot fail".to_owned());
         let stopped = self.has_rigid[1].then(|| {
-            "rigid bodies and footings with a prescribed motion are fixed at the end of the stage; their force on the soil \
-             decreases with its strength"
+            "rigid bodies and footings with a prescribed motion are fixed at the end of the stage; their force on \
+             the soil decreases with its strength"
                 .to_owned()
         });
         let softens = self.softens.then(|| SOFTENS.to_owned());
@@ -318,7 +318,8 @@ fn counted(case: &Case, region: &[f64]) -> Result<CountedPoints, Error> {
     let (lower, upper) = region.split_at(region.len() / 2);
     if region.len() != 2 * dims || lower.iter().zip(upper).any(|(low, high)| low >= high) {
         let reason = format!(
-            "E0832: --region is not a box. Give {dims} lower and then {dims} larger upper coordinates, separated by commas."
+            "E0832: --region is not a box. Give {dims} lower and then {dims} larger upper coordinates, separated \
+             by commas."
         );
         return Err(Error::Usage { reason });
     }

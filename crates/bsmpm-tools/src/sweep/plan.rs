@@ -47,8 +47,8 @@ impl SweepArguments {
                     usage(format!("E0837: --max-wall cannot be combined with --quantity {FACTOR}. Remove one of them."))
                 }
                 _ => usage(format!(
-                    "E0837: --quantity {FACTOR} must be the only quantity, without a time, because it replaces the runs. \
-                         Use a separate sweep."
+                    "E0837: --quantity {FACTOR} must be the only quantity, without a time, because it replaces the \
+                     runs. Use a separate sweep."
                 )),
             };
         }

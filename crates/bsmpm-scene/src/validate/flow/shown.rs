@@ -30,8 +30,8 @@ const LARGE: f64 = 0.1;
 const ENOUGH: f64 = 1e-2;
 
 /// What a factor of safety leaves out.
-pub const HELD_WATER: &str = "W0548: pore pressures stay constant during the strength reduction, so the factor of safety \
-    of soft clay may be too high. Compare it with that of `bsmpm fos --undrained`.";
+pub const HELD_WATER: &str = "W0548: pore pressures stay constant during the strength reduction, so the factor of \
+                              safety of soft clay may be too high. Compare it with that of `bsmpm fos --undrained`.";
 
 /// Load over stiffness up to which ground one cell across was shown to be right; under 0.5 runs ended early.
 const SHOWN_NARROW: f64 = 0.2;
@@ -49,8 +49,8 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
             output.error("fields", message, report);
         }
         if let Some(analysis) = root.record("analysis").filter(|_| consolidates) {
-            let message = "E0501: no material has pore-water flow, so nothing consolidates. Set `drainage = \"coupled\"` with \
-                           `porosity` and `permeability`, or use \"quasi-static\".";
+            let message = "E0501: no material has pore-water flow, so nothing consolidates. Set `drainage = \
+                           \"coupled\"` with `porosity` and `permeability`, or use \"quasi-static\".";
             analysis.error("type", message, report);
         }
         return;
@@ -58,8 +58,8 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     let flows = matches!(case.analysis.kind, AnalysisType::Consolidation | AnalysisType::Dynamic);
     if let Some(analysis) = root.record("analysis").filter(|_| !flows) {
         let message = format!(
-            "E0502: \"{}\" has no pore-water flow, but a material is \"coupled\" or \"undrained\". Use \"consolidation\" or \
-             \"dynamic\", or change `drainage`.",
+            "E0502: \"{}\" has no pore-water flow, but a material is \"coupled\" or \"undrained\". Use \
+             \"consolidation\" or \"dynamic\", or change `drainage`.",
             case.analysis.kind.word()
         );
         analysis.error("type", message, report);
@@ -86,8 +86,8 @@ fn narrow(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let retention = soil.as_ref().and_then(|soil| soil.retention.as_ref());
         let Some(entry) = retention.map(|of| of.curve.entry()).filter(|entry| NARROW * *entry < cell) else { continue };
         report.warn(format!(
-            "W0540: material.{}.retention: the air-entry suction head of {entry:.2e} m is {:.0} times less than a cell (limit \
-             {NARROW}), so steps may fail. Use a curve with an air entry of 0.1 cells.",
+            "W0540: material.{}.retention: the air-entry suction head of {entry:.2e} m is {:.0} times less than a \
+             cell (limit {NARROW}), so steps may fail. Use a curve with an air entry of 0.1 cells.",
             named.name,
             cell / entry
         ));
@@ -106,8 +106,8 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let soft = case.solver.background < 0.5 * ENOUGH && case.analysis.regime == Regime::QuasiStatic;
     if is_loose && soft && load >= LARGE {
         report.warn(format!(
-            "W0541: solver.background: {:e} is too low for a load of {load:.2} times the oedometric stiffness: settlements \
-             may be wrong by 10 %. Set `solver.background = {ENOUGH}`.",
+            "W0541: solver.background: {:e} is too low for a load of {load:.2} times the oedometric stiffness: \
+             settlements may be wrong by 10 %. Set `solver.background = {ENOUGH}`.",
             case.solver.background
         ));
     }
@@ -115,8 +115,8 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     if averages && load > SHOWN_NARROW && case.grid.axes.iter().take(case.grid.dims() - 1).any(|axis| axis.cells() == 1)
     {
         report.warn(format!(
-            "W0542: grid: soil one cell wide can move sideways under a load of {load:.2} times its oedometric stiffness. Use \
-             two cells, or `stabilisation.method = \"none\"`."
+            "W0542: grid: soil one cell wide can move sideways under a load of {load:.2} times its oedometric \
+             stiffness. Use two cells, or `stabilisation.method = \"none\"`."
         ));
     }
 }
@@ -124,8 +124,8 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 /// Splines, points, averages and iterations that carry the pressure.
 fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some(grid) = root.record("grid").filter(|_| case.grid.order == 1) {
-        let message = "E0541: \"linear\" splines give no usable gradient of the pore pressure, which drives the flow. Use \
-                       \"quadratic\".";
+        let message = "E0541: \"linear\" splines give no usable gradient of the pore pressure, which drives the \
+                       flow. Use \"quadratic\".";
         grid.error("degree", message, report);
     }
     let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
@@ -161,8 +161,8 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
         let Some(law) = record.word::<LawName>("model") else { continue };
         if flow.soils[number].is_none() && !drains_where_they_meet(case, flow, number) {
             report.warn(format!(
-                "W0543: material.{name}: it is \"hydrostatic\" next to soil with pore-water flow, and no water crosses between \
-                 them. Add a [[drain]] at the interface, or set `drainage = \"coupled\"`."
+                "W0543: material.{name}: it is \"hydrostatic\" next to soil with pore-water flow, and no water \
+                 crosses between them. Add a [[drain]] at the interface, or set `drainage = \"coupled\"`."
             ));
         }
         let is_excluded = matches!(law, LawName::SensitiveClay | LawName::MuI | LawName::CamClay);
@@ -194,8 +194,8 @@ fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report
     } else if case.stages.get(number).is_some_and(|stage| !stage.remove.is_empty() && !drains_what_is_bare(case, stage))
     {
         report.warn(format!(
-            "W0544: stage.{number}.remove: the surface exposed by the excavation has no drain, so it is impermeable. Add a \
-             [[drain]] along it, and list its name in `activate` of this stage."
+            "W0544: stage.{number}.remove: the surface exposed by the excavation has no drain, so it is \
+             impermeable. Add a [[drain]] along it, and list its name in `activate` of this stage."
         ));
     }
     case.stages.get(number).into_iter().for_each(|stage| goes(case, (number, stage), report));
@@ -231,8 +231,8 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
         };
         if !flow.drains.iter().enumerate().any(drains) {
             report.warn(format!(
-                "W0544: stage.{number}.add: the added body.{body} has no drain, so its surface is impermeable. Add a [[drain]] \
-                 along it, and list its name in `activate` of this stage."
+                "W0544: stage.{number}.add: the added body.{body} has no drain, so its surface is impermeable. Add \
+                 a [[drain]] along it, and list its name in `activate` of this stage."
             ));
         }
     }
@@ -245,8 +245,8 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
         let stays = [case.just_before(stage.at), stage.at].into_iter().all(|t| acts(drain, t));
         if stays && places(of, case).iter().any(covers) {
             report.warn(format!(
-                "W0545: stage.{number}.add: drain.{drain} keeps draining below the added soil, like a drainage blanket. If \
-                 there is no blanket, list the drain in `deactivate` of this stage."
+                "W0545: stage.{number}.add: drain.{drain} keeps draining below the added soil, like a drainage \
+                 blanket. If there is no blanket, list the drain in `deactivate` of this stage."
             ));
         }
     }
@@ -264,8 +264,8 @@ fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) 
         if acts && matches!(of.site, DrainSite::Lines(_) | DrainSite::Plate(_)) && places(of, case).iter().all(is_gone)
         {
             report.warn(format!(
-                "W0546: stage.{number}.remove: drain.{drain} lies on the removed soil and is removed with it. Add a [[drain]] \
-                 along the new surface, and list its name in `activate` of this stage."
+                "W0546: stage.{number}.remove: drain.{drain} lies on the removed soil and is removed with it. Add \
+                 a [[drain]] along the new surface, and list its name in `activate` of this stage."
             ));
         }
     }
@@ -323,8 +323,8 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
     if case.settles || case.initial == Some(Initial::Elastic) {
         for load in case.sudden_loads() {
             report.warn(format!(
-                "W0547: {load}: it acts in full from time 0 and is part of the initial stress, so no soil consolidates under \
-                 it. Apply it with `ramp`."
+                "W0547: {load}: it acts in full from time 0 and is part of the initial stress, so no soil \
+                 consolidates under it. Apply it with `ramp`."
             ));
         }
     }
@@ -341,8 +341,8 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
     if reduction.gives("stage") && flow.at_rest == Motion::Held && !unloaded {
         report.warn(HELD_WATER);
     } else if !reduction.gives("stage") {
-        let message = "E0543: with pore-water flow the strength cannot be reduced from the start. Set `stage = \"end\"`, \
-                       which keeps the pore pressures of that time (`bsmpm fos --stage end`).";
+        let message = "E0543: with pore-water flow the strength cannot be reduced from the start. Set `stage = \
+                       \"end\"`, which keeps the pore pressures of that time (`bsmpm fos --stage end`).";
         report.error(reduction.origin, &reduction.path, message);
     }
 }
@@ -351,15 +351,15 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
 fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some((growth, _)) = case.analysis.growth.filter(|(growth, _)| *growth > MOST_GROWTH) {
         report.warn(format!(
-            "W0549: analysis.growth: {growth} exceeds {MOST_GROWTH}, so steps become inaccurate and consolidation overshoots. \
-             Set `growth` to {MOST_GROWTH} or less."
+            "W0549: analysis.growth: {growth} exceeds {MOST_GROWTH}, so steps become inaccurate and consolidation \
+             overshoots. Set `growth` to {MOST_GROWTH} or less."
         ));
     }
     let alike = case.analysis.growth.is_none() && root.record("analysis").is_some_and(|record| record.gives("dt_max"));
     if alike {
         report.warn(
-            "W0550: analysis.dt_max: it has no effect without `growth`, because all steps are equal. Add `growth`, or remove \
-             `dt_max`.",
+            "W0550: analysis.dt_max: it has no effect without `growth`, because all steps are equal. Add `growth`, \
+             or remove `dt_max`.",
         );
     }
 }
@@ -368,8 +368,8 @@ fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
 fn weighed(case: &Case, report: &mut Report<'_>) {
     if case.gravity.is_some() && case.water.is_none() {
         report.warn(
-            "W0551: water: there is gravity but no water table, so the pore pressure is zero at the start and only develops \
-             with time. Give `water.level`.",
+            "W0551: water: there is gravity but no water table, so the pore pressure is zero at the start and only \
+             develops with time. Give `water.level`.",
         );
     }
 }
@@ -395,8 +395,8 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     for (number, drain) in flow.drains.iter().enumerate().filter(|(_, drain)| drain.given == Given::StillWater) {
         if height > FILM && places(drain, case).iter().any(dry) {
             report.warn(format!(
-                "W0552: drain.{number}: above the water table it acts like a pond and feeds up to {height:.1} cells of water \
-                 into the soil in {period}. Set `seepage = true`, or give the pond's `head`."
+                "W0552: drain.{number}: above the water table it acts like a pond and feeds up to {height:.1} \
+                 cells of water into the soil in {period}. Set `seepage = true`, or give the pond's `head`."
             ));
         }
     }
@@ -421,8 +421,8 @@ fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let most = above.fold(0.0, f64::max);
         if most > cell {
             report.warn(format!(
-                "W0553: material.{}: its upper {most:.2} m are above the water table but stay saturated; suction up to {:.0} kPa \
-                 increases the strength. Add `retention`, or use \"hydrostatic\" for dry soil.",
+                "W0553: material.{}: its upper {most:.2} m are above the water table but stay saturated; suction \
+                 up to {:.0} kPa increases the strength. Add `retention`, or use \"hydrostatic\" for dry soil.",
                 named.name,
                 1e-3 * most * water.unit_weight
             ));
@@ -451,8 +451,8 @@ fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let most = places(drain, case).iter().map(above).fold(0.0, f64::max);
         if most > 0.5 * cell {
             report.warn(format!(
-                "W0554: drain.{number}: the head is up to {most:.3} m above the surface, but no water weighs on the surface. \
-                 For free water give `water.level` instead of `head`."
+                "W0554: drain.{number}: the head is up to {most:.3} m above the surface, but no water weighs on \
+                 the surface. For free water give `water.level` instead of `head`."
             ));
         }
     }
