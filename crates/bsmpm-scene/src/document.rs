@@ -71,7 +71,7 @@ pub(crate) fn parse(source: &Source<'_>, report: &mut Report<'_>) -> DocumentTab
         let origin = error.span().map_or(Origin::Nowhere, |span| Origin::Text(span.start));
         let line = error.span().map(|span| source.line(span.start));
         if line.is_none() || line != last_line {
-            report.error(origin, "", format!("no valid TOML: {}", error.message()));
+            report.error(origin, "", format!("E0005: the line does not follow the TOML format: {}.", error.message()));
         }
         last_line = line;
     }

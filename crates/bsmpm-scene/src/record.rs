@@ -10,7 +10,11 @@ use crate::report::{Report, shortened};
 use crate::schema::{Group, Key, Kind, Presence, Table, answer};
 use crate::unit::Dimension;
 use crate::words::{AnalysisType, Geometry, Word};
+use bsmpm_messages::code_of;
 pub(crate) use value::UNREAD;
+
+/// Of a key of the language that this version does not have.
+const NOT_YET: &str = "E0012: this key is not available yet. Delete it.";
 
 /// A table whose keys and values are as the schema says.
 #[derive(Clone, Debug)]
@@ -103,10 +107,10 @@ impl Context {
         for key in table.keys {
             let path = join(path, key.name);
             match (written.get(key.name), key.presence) {
-                (Some(entry), Presence::Later) => report.error(entry.origin, &path, "not available yet"),
+                (Some(entry), Presence::Later) => report.error(entry.origin, &path, NOT_YET),
                 (Some(entry), Presence::Retired) => {
                     if self.datum(&key.kind, &entry.node, &path, report).is_some() {
-                        report.warn(format!("{path}: this key has no effect any more, as {}. Delete it.", key.doc));
+                        report.warn(format!("W0001: {path}: this key has no effect any more: {}. Delete it.", key.doc));
                     }
                 }
                 (Some(entry), _) => {
@@ -114,7 +118,8 @@ impl Context {
                     record.fields.push(RecordField { key: key.name, origin: entry.node.origin, written: true, datum });
                 }
                 (None, Presence::Required) => {
-                    report.error(origin, &path, format!("missing; it is {}", key.kind));
+                    let message = format!("E0014: this key is missing. Add it; its value is {}.", key.kind);
+                    report.error(origin, &path, message);
                     record.fields.push(RecordField { key: key.name, origin, written: false, datum: None });
                 }
                 (None, Presence::Default(text)) => {
@@ -139,7 +144,9 @@ impl Context {
         report: &mut Report<'_>,
     ) -> Option<Datum> {
         let Ok(node) = document::parse_value(text, origin) else {
-            report.error(origin, path, format!("the default {text} is no TOML: a mistake of the program"));
+            let message =
+                format!("E0099: the default value `{text}` cannot be read. Report this defect of the program.");
+            report.error(origin, path, message);
             return None;
         };
         let listed = path.split('.').any(|part| part.starts_with(|c: char| c.is_ascii_digit()));
@@ -158,7 +165,7 @@ impl Context {
             (Kind::Named(table), Value::Table(written)) => Some(self.named(table, written, path, report)),
             (Kind::Tables(table), Value::List(items)) => self.records(table, items, path, report),
             (Kind::Table(_) | Kind::Named(_) | Kind::Tables(_), _) => {
-                report.error(node.origin, path, format!("expected {kind}, found {}", node.show()));
+                report.error(node.origin, path, value::expected(kind, node));
                 None
             }
             _ => value::read(kind, node, path, (self.pseudo_time, self.geometry), report),
@@ -170,15 +177,14 @@ impl Context {
         for entry in &written.entries {
             let path = join(path, &entry.key);
             if !value::is_name(&entry.key) {
-                report.error(entry.origin, &path, format!("the name must be {}", Kind::Name));
+                report.error(entry.origin, &path, format!("E0024: this name is not allowed. Use {}.", Kind::Name));
             }
             match &entry.node.value {
                 Value::Table(inner) => {
                     named.push((entry.key.clone(), self.record(table, inner, entry.origin, &path, report)));
                 }
                 _ => {
-                    let message = format!("expected a table, {}, found {}", table.header, entry.node.show());
-                    report.error(entry.origin, &path, message);
+                    report.error(entry.origin, &path, value::expected(&Kind::Table(table), &entry.node));
                 }
             }
         }
@@ -191,13 +197,7 @@ impl Context {
             let path = join(path, &number.to_string());
             match &item.value {
                 Value::Table(written) => records.push(self.record(table, written, item.origin, &path, report)),
-                _ => {
-                    report.error(
-                        item.origin,
-                        &path,
-                        format!("expected a table, {}, found {}", table.header, item.show()),
-                    );
-                }
+                _ => report.error(item.origin, &path, value::expected(&Kind::Table(table), item)),
             }
         }
         (records.len() == items.len()).then_some(Datum::Records(records))
@@ -210,24 +210,36 @@ impl Context {
             report.error(entry.origin, &join(path, &entry.key), self.unknown_key(table, &entry.key));
         }
         if let Some(entry) = unknown.next() {
-            let message = format!("{} more unknown keys from here on", unknown.count() + 1);
+            let message = format!(
+                "E0009: {} more unknown keys follow here and are not listed. Correct those above first.",
+                unknown.count() + 1
+            );
             report.error(entry.origin, path, message);
         }
     }
 
     fn unknown_key(self, table: &'static Table, key: &str) -> String {
         if let Some(answer) = answer(table, key) {
-            return format!("unknown key `{}` in {}: {answer}", shortened(key), table.header);
+            return match code_of(answer) {
+                Some(_) => answer.to_owned(),
+                None => format!("E0011: the key `{}` does not exist in {}. {answer}", shortened(key), table.header),
+            };
         }
         let names = || table.keys.iter().filter(|key| key.presence != Presence::Retired).map(|key| key.name);
         let elsewhere = || self.root.all().into_iter().find(|other| other.key(key).is_some());
         let hint = match (nearest(key, names()), elsewhere()) {
             (Some(name), _) => format!("; did you mean `{name}`?"),
-            (None, Some(other)) => format!("; `{key}` belongs to {}", other.header),
+            (None, Some(other)) => format!("; it belongs to {}", other.header),
             (None, None) => String::new(),
         };
         let known: Vec<&str> = names().collect();
-        format!("unknown key `{}` in {}{hint} (known: {})", shortened(key), table.header, known.join(", "))
+        let end = if hint.ends_with('?') { "" } else { "." };
+        format!(
+            "E0011: the key `{}` does not exist in {}{hint}{end} Known keys: {}.",
+            shortened(key),
+            table.header,
+            known.join(", ")
+        )
     }
 }
 
@@ -247,11 +259,16 @@ fn exclusive<'a>(
         && !reported.contains(&[&first.key, &second.key])
     {
         reported.push([&first.key, &second.key]);
-        let message = format!("`{}` is given too; only one of {} may be", first.key, group.keys.join(", "));
+        let message = format!(
+            "E0016: `{}` is given too, but only one of the keys {} is allowed. Delete one of them.",
+            first.key,
+            group.keys.join(", ")
+        );
         report.error(second.origin, &join(&record.path, &second.key), message);
     }
     if given.is_empty() && group.required {
-        report.error(record.origin, &record.path, format!("missing: one of {}", group.keys.join(", ")));
+        let message = format!("E0014: none of the keys {} is given. Add one of them.", group.keys.join(", "));
+        report.error(record.origin, &record.path, message);
     }
 }
 

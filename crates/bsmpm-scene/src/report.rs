@@ -59,7 +59,8 @@ impl<'a> Report<'a> {
     /// Records that the value of `key` is a word that this version does not have any more.
     pub(crate) fn removed(&mut self, origin: Origin, key: &str, word: &'static RemovedWord) {
         let RemovedWord { word: text, last, remedy } = word;
-        self.record(origin, key, format!("\"{text}\" was removed after {last}. {remedy}"), Some(word));
+        let message = format!("E0018: the value \"{text}\" was removed after {last}. {remedy}");
+        self.record(origin, key, message, Some(word));
     }
 
     fn record(&mut self, origin: Origin, key: &str, message: String, removed: Option<&'static RemovedWord>) {
@@ -127,7 +128,10 @@ impl<'a> Report<'a> {
     /// Hands over what earlier names the case has: one sentence for each.
     pub(crate) fn take_renamings(&mut self) -> Vec<String> {
         let sentence = |Renaming { earlier, now, paths }: Renaming| {
-            format!("{}: {earlier} is now called {now}. The earlier name is still read.", listed(&paths))
+            format!(
+                "{}: `{earlier}` is now called `{now}`. Replace the earlier name, which is still read.",
+                listed(&paths)
+            )
         };
         std::mem::take(&mut self.renamings).into_iter().map(sentence).collect()
     }
@@ -146,15 +150,9 @@ impl<'a> Report<'a> {
         if errors.len() > MOST {
             let more = errors.len() - MOST;
             errors.truncate(MOST);
-            errors.push(Error {
-                file: self.source.name.to_owned(),
-                place: Place::File,
-                key: String::new(),
-                code: None,
-                message: format!("{more} more errors are not shown"),
-                removed: None,
-                excerpt: None,
-            });
+            let message =
+                format!("E0009: {more} more errors are not shown. Correct those above, and check the case again.");
+            errors.push(Error::of_file(self.source.name, &message));
         }
         errors
     }

@@ -81,10 +81,10 @@ pub enum Error {
         name: String,
     },
     /// A load has reached no limit.
-    #[error("no limit was reached; the table says why")]
+    #[error("E0854: a load has not reached its limit on every grid. Follow the warnings below the table.")]
     NoLimitLoad,
     /// Tests of one point that a material cannot follow.
-    #[error("{} test(s) did not come to their end:\n  {}", failed.len(), failed.join("\n  "))]
+    #[error("E0853: {} element test(s) could not be completed:\n  {}", failed.len(), failed.join("\n  "))]
     Element {
         /// Each with its reason.
         failed: Vec<String>,

@@ -32,9 +32,8 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
             let Some(time) = meeting(one, other, cell, case) else { continue };
             let reach = case.grid.order as f64;
             report.warn(format!(
-                "body.{} and body.{} approach each other, and come within a cell at about t = {time:.3} s. They act on each \
-                 other from about {:.1} cells ({:.3e} m) on, before they touch. Use smaller cells there, or [[rigid]] for one \
-                 of them.",
+                "W0229: body.{} and body.{} approach each other at about t = {time:.3} s. They act on each other from \
+                 {:.1} cells ({:.3e} m) on, before they touch. Use smaller cells.",
                 one.bodies[0],
                 other.bodies[0],
                 reach - 0.5,

@@ -148,7 +148,7 @@ fn i22_a_case_that_is_no_file_is_refused_once_with_66_and_not_waited_for() {
 fn i23_more_ranks_than_slabs_and_their_parts_are_refused_once_with_65() {
     let scratch = Scratch::with_case(COLUMN);
     let output = scratch.mpirun(7, &["case.toml"]).expect(65);
-    output.says_once("7 ranks are too many: the grid has 4 columns of 5 cells along y, so at most 4 ranks");
+    output.says_once("the grid has 4 columns of 5 cells, too few for 7 ranks. Use at most 4 ranks");
     assert_eq!(scratch.entries(), ["case.toml"]);
 }
 

@@ -66,7 +66,7 @@ fn a_json_log_is_one_object_a_line() {
 fn warnings_of_the_case_are_reported_once_and_kept() {
     let scratch = Scratch::with_case(COLUMN);
     let output = scratch.mpirun(2, &["case.toml", "--set", "output.every=2"]).expect(0);
-    output.says_once("beyond the end of the run");
+    output.says_once("W0661: output.every");
     let warnings = crate::support::results::manifest(&scratch.path("case.out")).warnings;
     assert_eq!(warnings.len(), 1, "{warnings:?}");
 }
