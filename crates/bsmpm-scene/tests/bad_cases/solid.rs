@@ -23,8 +23,8 @@ const PERMEABLE: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\
 /// Changes of `solid.toml`.
 pub const WET: &[Row] = &[
     row("upper = [2.0, 3.0, 1.5] }\nseepage", "upper = [2.5, 3.0, 1.5] }\nseepage", "drain.0.rectangle", "E0234"),
-    row("disc     = { centre = [1.0", "disc = { centre = [3.5", "drain.1.disc", "no body is at"),
-    row("upper = [1.0, 3.0, 1.5] }\nrate", "upper = [3.0, 3.0, 1.5] }\nrate", "inflow.0.rectangle", "no body is at"),
+    row("disc     = { centre = [1.0", "disc = { centre = [3.5", "drain.1.disc", "E0512"),
+    row("upper = [1.0, 3.0, 1.5] }\nrate", "upper = [3.0, 3.0, 1.5] }\nrate", "inflow.0.rectangle", "E0512"),
     row("disc = { centre = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "E0225"),
     row(
         "rectangle = { lower = [2.0, 0.0, 0.0], upper = [2.0, 3.0, 1.5] }",
@@ -154,13 +154,8 @@ pub const SOLID: &[Row] = &[
         "stage.0.boundary.bottom",
         "an edge",
     ),
-    row("[gravity]", "[water]\nlevel = 0.0\n[gravity]", "water.level", "lower face, z = 0").down(1),
-    row(
-        "[0.0, 0.0, -9.81]",
-        "[0.0, -1.0, -9.81]\n[water]\nlevel = 1.0",
-        "gravity.acceleration",
-        "is not straight down",
-    ),
+    row("[gravity]", "[water]\nlevel = 0.0\n[gravity]", "water.level", "E0524 .. z = 0 m").down(1),
+    row("[0.0, 0.0, -9.81]", "[0.0, -1.0, -9.81]\n[water]\nlevel = 1.0", "gravity.acceleration", "E0523"),
     row("[gravity]", "[[inflow]]\nfrom = [0, 0]\nto = [1, 1]\nrate = 1e-6\n[gravity]", "inflow.0.from", "E0225")
         .down(1),
     row("density = 2000", FLOWS, "drain.0.surface", "E0225").down(7),
