@@ -3,7 +3,7 @@
 use crate::launch::say;
 use bsmpm_io::disk::size;
 use bsmpm_io::exit::USAGE;
-use clap::{Parser, ValueEnum};
+use clap::{ArgAction, Parser, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -21,6 +21,19 @@ pub enum LogFormat {
     Text,
     /// One JSON object a line.
     Json,
+}
+
+/// How a run shows its progress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressForm {
+    /// A line on a terminal, lines elsewhere; none with -q, -v or a log of JSON.
+    Auto,
+    /// One line that is overwritten.
+    Line,
+    /// A line after 10 s and then every 2 minutes.
+    Log,
+    /// None.
+    Off,
 }
 
 /// What a run goes on from.
@@ -91,13 +104,16 @@ pub struct Arguments {
     /// Refuse a run whose frames and checkpoints may not fit on the disk (exit 74), instead of warning
     #[arg(long)]
     pub strict_space: bool,
-    /// No log lines
+    /// Print only warnings, errors and why a run ends early
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Log rejected attempts in full, too
-    #[arg(short, long)]
-    pub verbose: bool,
-    /// Form of the log
+    /// Print a line for every step (-v), and every rejected attempt at a step (-vv)
+    #[arg(short, long, action = ArgAction::Count)]
+    pub verbose: u8,
+    /// Show the progress: on a terminal by one line that is overwritten, elsewhere by a line every 2 minutes
+    #[arg(long, value_name = "FORM", default_value = "auto")]
+    pub progress: ProgressForm,
+    /// Form of the log: text, or one JSON object a line with every event
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     pub log_format: LogFormat,
     /// Options for PETSc, after `--`, e.g. -- -ksp_type cg -pc_type gamg
@@ -138,6 +154,38 @@ impl Arguments {
             name.push(".out");
             PathBuf::from(name)
         })
+    }
+
+    /// The command that continues this run on so many ranks, as a shell reads it.
+    pub fn continuing(&self, ranks: usize) -> String {
+        let launcher = match std::env::var(COMMAND) {
+            Ok(command) => command,
+            Err(_) if ranks > 1 => format!("mpirun -n {ranks} bsmpm-par"),
+            Err(_) => "bsmpm-par".into(),
+        };
+        let mut words = vec![launcher, quoted(&self.case.to_string_lossy())];
+        words.extend(self.set.iter().map(|set| format!("--set {}", quoted(set))));
+        words.extend(self.output.iter().map(|directory| format!("-o {}", quoted(&directory.to_string_lossy()))));
+        words.extend((self.threads > 1).then(|| format!("--threads {}", self.threads)));
+        words.push("--restart auto".into());
+        if !self.petsc.is_empty() {
+            words.push("--".into());
+            words.extend(self.petsc.iter().map(|option| quoted(option)));
+        }
+        words.join(" ")
+    }
+}
+
+/// The environment variable by which a script names the command that started the run.
+const COMMAND: &str = "BSMPM_COMMAND";
+
+/// A word as a shell reads it.
+fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.into()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
     }
 }
 
@@ -208,6 +256,18 @@ mod tests {
         assert!(refused(&["-ksp_monitor", "ascii:pwned"]));
         assert!(refused(&["-ksp_view_mat", "binary"]));
         assert!(refused(&["-on_error_attach_debugger"]));
+    }
+
+    #[test]
+    fn the_command_that_continues_a_run_is_quoted_for_a_shell() {
+        let given =
+            "bsmpm-par it's.toml --force -q --set grid.cell=5_mm --max-steps 3 -o out --threads 2 -- -ksp_type cg";
+        let given = given.split(' ').map(|word| word.replace('_', " ").replace("ksp type", "ksp_type"));
+        let arguments = Arguments::parse_from(given);
+        let expected =
+            "bsmpm-par 'it'\\''s.toml' --set 'grid.cell=5 mm' -o out --threads 2 --restart auto -- -ksp_type cg";
+        assert_eq!(arguments.continuing(1), expected);
+        assert!(arguments.continuing(3).starts_with("mpirun -n 3 bsmpm-par "));
     }
 
     #[test]

@@ -6,6 +6,9 @@
 mod advice;
 mod force_noise;
 mod limits;
+mod report;
+
+pub use report::{acceptance, description, line};
 
 use crate::record::Recorder;
 use crate::setup;
@@ -135,8 +138,8 @@ impl IndicatorState {
             ("water-measure", summary.largest_water_measure),
         ];
         for (name, value) in measures {
-            let meaning = "largest of a step that was accepted by it, over its tolerance";
-            all.extend(value.map(|value| (name, Indicator::new(value, "-", meaning, [0.0, 1.0]))));
+            let meaning = format!("largest {} of an accepted step", name.replace("-measure", " residual"));
+            all.extend(value.map(|value| (name, Indicator::new(value, "-", &meaning, [0.0, 1.0]))));
         }
         let (enough, most) = COMPRESSION;
         let lost = |body: &&Body| self.compression[body.material];
@@ -148,10 +151,18 @@ impl IndicatorState {
         let coarse = largest(&mut coarse.map(|body| lost(&body)));
         let usual = [0.0, if coarse > most { most } else { 1.0 }];
         let value = if coarse > most { coarse } else { largest(&mut case.bodies.iter().map(|body| lost(&body))) };
-        let meaning = "part of its volume that the most compressed material has lost";
+        let meaning = "volume reduction of the most compressed material";
         all.push(("compression", Indicator::new(value, "-", meaning, usual)));
         let slip = summary.largest_slip.map(|value| {
-            ("slip", Indicator::new(value, "-", "largest slip of a strip in a step, over its motion", [0.0, SLIP]))
+            (
+                "slip",
+                Indicator::new(
+                    value,
+                    "-",
+                    "largest slip at a rigid footing or segment, relative to its motion in the step,",
+                    [0.0, SLIP],
+                ),
+            )
         });
         let smoothed = summary.smoothing_passes.map(|passes| ("smoothing-length", smoothing(case, passes)));
         all.extend(slip.into_iter().chain(smoothed).chain(course(case, summary)));
@@ -162,8 +173,9 @@ impl IndicatorState {
         // JSON has no other numbers.
         all.retain(|(_, indicator)| indicator.value.is_finite());
         let judged = |(name, indicator): (&str, Indicator)| {
+            let advice = advice::of(name, case, indicator.value);
             let limited = indicator.limited(limits::of(name, case), limits::are_accepted(name, case));
-            (name.to_owned(), limited.advising(&advice::of(name, case)))
+            (name.to_owned(), limited.coded(report::code(name)).advising(&advice))
         };
         all.into_iter().map(judged).collect()
     }
@@ -175,39 +187,41 @@ impl IndicatorState {
             row(
                 "pressure-noise-average",
                 self.noise.about_average,
-                "RMS of the points' pressure about its average over the grid, over its mean magnitude",
+                "scatter of the pressure about its local average, relative to the mean,",
                 NOISE[0],
             ),
             row(
                 "pressure-noise-plane",
                 self.noise.about_plane,
-                "the same about the least-squares plane through the cell and its neighbours",
+                "scatter of the pressure about a local linear fit, relative to the mean,",
                 NOISE[1],
             ),
         ];
         if let Some(defect) = self.defect {
-            let meaning = "RMS over inner cells of the volume of a cell's points over that of the cell, less 1";
+            let meaning = "RMS error of the volume of material points in filled cells";
             rows.push(row("quadrature-defect", defect.rms, meaning, DEFECT[0]));
-            rows.push(row("quadrature-defect-largest", defect.largest, "the largest of them", DEFECT[1]));
-            let meaning = "mean number of points in inner cells";
+            rows.push(row(
+                "quadrature-defect-largest",
+                defect.largest,
+                "largest error of the volume of material points in a filled cell",
+                DEFECT[1],
+            ));
+            let meaning = "mean number of material points in filled cells";
             rows.push(("points-per-cell", Indicator::new(defect.points, "-", meaning, POINTS)));
         }
         if let Some(energy) = self.energy {
-            let meaning = "energy that is not accounted for, over the largest energy";
+            let meaning = "energy that is not accounted for, relative to the peak energy,";
             rows.push(row("energy-closure", energy.closure, meaning, ENERGY[0]));
-            let meaning = "energy that the algorithm lost (negative: made), over the largest energy";
+            let meaning = "numerical dissipation relative to the peak energy";
             let usual = [-ENERGY[1], ENERGY[1]];
             rows.push(("energy-loss", Indicator::new(energy.loss, "-", meaning, usual)));
         }
         if let Some(growth) = self.growth {
-            let meaning = "largest excess of kinetic, elastic and dissipated energy over that of the start and all work \
-                           since, over the largest energy";
+            let meaning = "energy created by the algorithm, relative to the peak energy,";
             rows.push(row("energy-growth", growth, meaning, GROWTH));
         }
         if let Some(lost) = self.water {
-            let meaning = "water that is not accounted for, over the largest of what left through the ground's surface, what came \
-                           in there, and what its points took in and gave off: what the iterations leave, in a step up to \
-                           force_tolerance of what moves there or 1e-13 of the ground's volume";
+            let meaning = "error of the water balance, relative to the water that moved,";
             rows.push(row("water-balance", lost, meaning, WATER));
         }
         rows
@@ -222,33 +236,30 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
     let has_soil = case.bodies.iter().any(|body| case.materials[body.material].material.yields());
     let may_come_off = has_soil || case.gravity.is_some();
     let pull = summary.largest_pull.zip(summary.largest_reaction).filter(|_| may_come_off).map(|(pull, largest)| {
-        let meaning =
-            "largest force with which a face of the grid pulled the body, over the largest reaction of a face";
+        let meaning = "largest tension at a boundary of the grid, relative to the largest reaction,";
         ("support-pull", Indicator::new(share(pull, largest), "-", meaning, [0.0, PULL]))
     });
     let setback = summary.largest_front_setback.map(|setback| {
-        let meaning = "the farthest that the front went back behind its farthest place";
+        let meaning = "largest retreat of the front";
         ("front-setback", Indicator::new(setback, "m", meaning, [0.0, SETBACK * longest(&case.grid.axes[0])]))
     });
     let [background, load_share] = of_background(case, summary);
     let loss = summary.largest_stiffness_loss.map(|loss| {
-        let meaning = "second-order work of elastic ground over the actual one, largest of the steps";
-        let failed = summary.failed_at.map(|t| format!(". The ground has failed under its load at t = {}", short(t)));
-        let meaning = format!("{meaning}{}", failed.unwrap_or_default());
+        let failed = summary.failed_at.map(|t| format!(", which failed at t = {},", short(t)));
+        let meaning = format!("largest loss of stiffness of the ground{}", failed.unwrap_or_default());
         ("stiffness-loss", Indicator::new(loss, "-", &meaning, [0.0, STIFFNESS_LOSS]))
     });
     let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic).map(|advance| {
-        let meaning = "the farthest that a point moved in a step, in cells";
+        let meaning = "largest displacement of a material point in a step";
         ("step-advance", Indicator::new(advance / cell, "-", meaning, [0.0, ADVANCE]))
     });
     let beside = summary.beside_fixed.zip(summary.kinetic).map(|(excess, all)| {
-        let meaning = "kinetic energy that points within a cell of a fixed face have beyond that of their motion, over that of all \
-                       points, mean over the steps";
+        let meaning = "excess kinetic energy next to fixed boundaries, relative to the total,";
         ("wall-velocity", Indicator::new(share(excess, all), "-", meaning, [-BESIDE, BESIDE]))
     });
     let penetration = summary.deepest_penetration.map(|depth| {
-        let meaning = "the deepest that a material point was in a rigid body after a step, in cells";
+        let meaning = "largest penetration of material points into a rigid body";
         ("rigid-penetration", Indicator::new(depth, "-", meaning, [0.0, PENETRATION]))
     });
     [pull, setback, background, load_share, loss, advance, beside, penetration].into_iter().flatten()
@@ -264,17 +275,14 @@ fn short(t: f64) -> f64 {
 fn of_background(case: &Case, summary: &Summary) -> [Option<(&'static str, Indicator)>; 2] {
     let work = |value: f64, meaning| ("background-work", Indicator::new(value, "-", meaning, [0.0, BACKGROUND]));
     let load = summary.background_forces.map(|shares| {
-        let meaning = "largest force of the soft background on a node over the RMS force of the nodes, added over the steps \
-                       without prescribed motion";
+        let meaning = "force of the soft background on a node, relative to the RMS nodal force,";
         ("background-load-share", Indicator::new(shares, "-", meaning, [0.0, LOAD_SHARE]))
     });
     if case.limit_load.is_some() {
-        let meaning = "work done on the soft background in the last step, over the magnitudes of the works of the nodal \
-                       internal forces, or of the stresses where those are larger";
+        let meaning = "work of the soft background in the last step, relative to the internal work,";
         return [summary.last_background.map(|shares| work(shares.work, meaning)), load];
     }
-    let meaning = "work done on the soft background in all steps, over the magnitudes of the works of the nodal internal \
-                   forces, or of the stresses where those are larger";
+    let meaning = "work of the soft background, relative to the internal work,";
     let part = summary.background_work.zip(summary.internal_work);
     let share = |(soft, all): (f64, f64)| if soft == 0.0 { 0.0 } else { soft / all };
     [part.map(|part| work(share(part), meaning)), load]
@@ -284,12 +292,11 @@ fn of_background(case: &Case, summary: &Summary) -> [Option<(&'static str, Indic
 fn shifts(found: InterfaceShift, case: &Case) -> impl Iterator<Item = (&'static str, Indicator)> {
     let most = if case.solver.quadrature == Quadrature::Fitted { SHIFT_FITTED } else { SHIFT };
     let stress = found.stress.map(|moved| {
-        let meaning = "the farthest that an interface between materials has left its grid line, in cells";
+        let meaning = "distance of a material interface from its grid line";
         ("interface-shift", Indicator::new(moved, "-", meaning, [0.0, most]))
     });
     let water = found.water.map(|moved| {
-        let meaning =
-            "the farthest that an interface between soils with unlike permeabilities has left its grid line, in cells";
+        let meaning = "distance of an interface between soils of different permeability from its grid line";
         ("permeability-shift", Indicator::new(moved, "-", meaning, [0.0, SHIFT_WATER]))
     });
     stress.into_iter().chain(water)
@@ -297,7 +304,7 @@ fn shifts(found: InterfaceShift, case: &Case) -> impl Iterator<Item = (&'static 
 
 /// Cells across a footing.
 fn across_footing(cells: f64) -> Indicator {
-    let meaning = "cells across the width of the footing, of a half at a face of the grid across both halves";
+    let meaning = "number of cells across the width of the footing";
     Indicator::new(cells, "-", meaning, [FOOTING_CELLS, MANY_CELLS])
 }
 
@@ -305,53 +312,17 @@ fn across_footing(cells: f64) -> Indicator {
 fn across(narrowest: &NarrowestOpening) -> Indicator {
     let NarrowestOpening { path, cells, least, .. } = narrowest;
     let width = narrowest.brief_width();
-    let meaning = format!("cells across the hole or notch with the fewest at the start, {path} of {width} m");
+    let meaning = format!("number of cells across the narrowest hole or notch, `{path}` of {width} m,");
     Indicator::new(*cells, "-", &meaning, [*least, MANY_CELLS])
 }
 
 /// How far so many passes of smoothing have reached.
 fn smoothing(case: &Case, passes: f64) -> Indicator {
     let (meaning, part) = match case.stabilisation {
-        Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => (
-            "along which the elastic dilation was smoothed in all steps together, by the share of plastic flow, mean over the \
-             points; usual: up to 1.5 of the thinnest connected material",
-            SMOOTHED[1],
-        ),
-        _ => (
-            "along which the elastic strain was smoothed in all steps together, once in each; usual: up to a tenth of the \
-             thinnest connected material",
-            SMOOTHED[0],
-        ),
+        Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
+            ("length over which the volumetric strain was smoothed", SMOOTHED[1])
+        }
+        _ => ("length over which the elastic strain was smoothed", SMOOTHED[0]),
     };
     Indicator::new(setup::smoothing_length(case, passes), "m", meaning, [0.0, part * case.thinnest()])
-}
-
-/// All of them in a line.
-pub fn line(indicators: &BTreeMap<String, Indicator>) -> String {
-    let all = indicators.iter().map(|(name, found)| format!("{name} {:.2e}{}", found.value, unit(found)));
-    format!("indicators: {}", all.collect::<Vec<_>>().join(", "))
-}
-
-fn unit(indicator: &Indicator) -> String {
-    if indicator.unit == "-" { String::new() } else { format!(" {}", indicator.unit) }
-}
-
-/// What is to be said of an indicator that is outside its usual range.
-pub fn description(name: &str, found: &Indicator) -> String {
-    let [least, most] = found.usual.map(|value| format!("{value:.2e}"));
-    let advice = if found.advice.is_empty() { String::new() } else { format!("; {}", found.advice) };
-    let (value, verdict) = (format!("{:.2e}{}", found.value, unit(found)), verdict(name, found));
-    format!("{verdict}: {name} is {value}, usually {least} to {most}: {}{advice}", found.meaning)
-}
-
-/// How a value outside the usual range is judged.
-fn verdict(name: &str, found: &Indicator) -> String {
-    match found.limits.filter(|_| found.failed) {
-        None => "unusual".to_owned(),
-        Some(_) if found.accepted => "beyond its limit, which output.accept accepts".to_owned(),
-        Some([_, most]) => format!(
-            "failed (beyond its limit of {most}, the answer is likely to be wrong by 10 % or more; to accept it, \
-             output.accept = [\"{name}\"])"
-        ),
-    }
 }

@@ -1,13 +1,16 @@
 //! Start and end of the program: what it says, and how a failure on one rank ends all of them.
 
+use crate::terminal::{self, Terminal};
 use bsmpm_io::exit::{BUG, WRONG_LAUNCH};
 use bsmpm_io::lock;
 use bsmpm_ranks::launch::{self, LaunchFailure};
 use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
 use std::fmt::Display;
+use std::fs::File;
 use std::io::Write;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Starts MPI; from here on a panic on any rank ends the job. `Err` holds the exit code.
@@ -29,10 +32,49 @@ pub fn end(world: &SimpleCommunicator, code: u8, reason: &dyn Display) -> ! {
     launch::abort(world, code)
 }
 
+/// The terminal of the launcher, if lines go there directly: after Ctrl-C a launcher does not print them any more.
+static TERMINAL: OnceLock<File> = OnceLock::new();
+/// Whether the cursor is on a line that the next one is to overwrite.
+static IS_DRAWN: AtomicBool = AtomicBool::new(false);
+
+/// Looks for the terminal at which a person watches this process. From here on lines go there.
+pub fn watch() -> bool {
+    match terminal::find() {
+        Some(Terminal::Own) => true,
+        Some(Terminal::OfLauncher(file)) => TERMINAL.set(file).is_ok(),
+        None => false,
+    }
+}
+
 /// Writes a line to stderr; where nobody listens there is nothing left to do.
 pub fn say(line: &str) {
+    let clear = if IS_DRAWN.swap(false, Ordering::Relaxed) { CLEAR } else { "" };
+    write(&format!("{clear}{line}\n"));
+}
+
+/// Writes a line on a terminal that the next line overwrites.
+pub fn draw(line: &str) {
+    IS_DRAWN.store(true, Ordering::Relaxed);
+    write(&format!("{line}{CLEAR}"));
+}
+
+/// Removes the line that was drawn last, if it is still there.
+pub fn erase() {
+    if IS_DRAWN.swap(false, Ordering::Relaxed) {
+        write(CLEAR);
+    }
+}
+
+/// Clears the rest of the line, and moves the cursor to its beginning.
+const CLEAR: &str = "\x1b[K\r";
+
+fn write(text: &str) {
+    if let Some(mut terminal) = TERMINAL.get() {
+        let _ = terminal.write_all(text.as_bytes());
+        return;
+    }
     let mut stderr = std::io::stderr().lock();
-    let _ = writeln!(stderr, "{line}").and_then(|()| stderr.flush());
+    let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }
 
 /// How long this process has been there: what a limit of time is compared with, so that starting libraries, making

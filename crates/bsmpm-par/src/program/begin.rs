@@ -81,7 +81,7 @@ fn run_in<K: Kinematics<D>, const D: usize>(
         resumed.close().map_err(refused)?;
     }
     let speaks = universe.world().rank() == 0;
-    let log = Log::new(speaks, arguments.quiet, arguments.verbose, arguments.log_format, case.analysis.end);
+    let log = Log::new(speaks, arguments, case);
     Ok(Run::new((universe, hdf5), task, scene, (ledger, log), timers, before).until_the_end())
 }
 

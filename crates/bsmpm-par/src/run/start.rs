@@ -1,6 +1,7 @@
 //! What a run tells and does before its first step.
 
 use super::Run;
+use crate::log::short;
 use crate::machine;
 use crate::setup::{self, Start};
 use bsmpm::error::StepError;
@@ -22,7 +23,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         if let Some(ledger) = &mut self.ledger {
             for warning in ledger.news() {
-                self.log.line("warning", &format!("warning: {warning}"));
+                self.log.warning("warning", &warning);
             }
         }
         if machine::has_reference_blas() {
@@ -33,11 +34,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             );
         }
         for note in &self.case.notes {
-            self.log.detail(&format!("{} = {}: {}", note.key, note.value, note.reason));
+            self.log.detail("detail", &format!("{} = {}: {}", note.key, note.value, note.reason));
         }
         if self.before.resumed {
             let (step, time) = (self.simulation.steps(), self.simulation.time());
-            self.log.line("restart", &format!("goes on from step {step}, t = {time}"));
+            self.log
+                .line("restart", &format!("Continuing from step {step} at t = {}{}.", short(time), self.time_unit()));
             return Ok(());
         }
         let mut report = StepReport::default();
@@ -47,7 +49,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         self.record(&report);
         if let Some(names) = self.recorder.vacant() {
-            self.log.line("history", &format!("histories without a point in their box at the start: {names}"));
+            self.log.detail(
+                "history",
+                &format!("No material point is in the box of these histories at the start: {names}."),
+            );
         }
         self.profile(|_, profile| profile.times.is_empty());
         self.frame();
@@ -61,11 +66,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if let Some(ledger) = &mut self.ledger {
             ledger.manifest().initial = Some(ManifestInitial { unbalance, yielding, settling });
         }
-        self.log.line(
+        let rounds = settling.map_or(String::new(), |it| format!(", reached in {} equilibrium iterations", it.rounds));
+        self.log.detail(
             "initial",
             &format!(
-                "stress at the start: unbalance {unbalance:.2e} of the largest force, {yielding} point(s) beyond yield{}",
-                settling.map_or(String::new(), |it| format!(", settled in {} round(s)", it.rounds))
+                "Initial stress: residual force {unbalance:.2e} of the largest force, {yielding} material points beyond \
+                 yield{rounds}."
             ),
         );
         if unbalance > UNBALANCED {
