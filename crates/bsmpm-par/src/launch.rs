@@ -3,6 +3,7 @@
 use crate::terminal::{self, Terminal};
 use bsmpm_io::exit::{BUG, WRONG_LAUNCH};
 use bsmpm_io::lock;
+use bsmpm_messages::headed;
 use bsmpm_ranks::launch::{self, LaunchFailure};
 use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
@@ -17,7 +18,7 @@ use std::time::{Duration, Instant};
 pub fn start() -> Result<Universe, u8> {
     age();
     launch::start(|world, reason| end(world, BUG, &reason)).map_err(|failure| {
-        say(&format!("bsmpm-par: {failure}"));
+        complain(&failure.to_string());
         match failure {
             LaunchFailure::NoMpi => BUG,
             LaunchFailure::Apart(_) => WRONG_LAUNCH,
@@ -27,7 +28,7 @@ pub fn start() -> Result<Universe, u8> {
 
 /// Ends the job on all ranks with `code`, for failures that the other ranks do not know of. Prints `reason` once.
 pub fn end(world: &SimpleCommunicator, code: u8, reason: &dyn Display) -> ! {
-    say(&format!("bsmpm-par: {reason}"));
+    complain(&reason.to_string());
     lock::abandon();
     launch::abort(world, code)
 }
@@ -50,6 +51,11 @@ pub fn watch() -> bool {
 pub fn say(line: &str) {
     let clear = if IS_DRAWN.swap(false, Ordering::Relaxed) { CLEAR } else { "" };
     write(&format!("{clear}{line}\n"));
+}
+
+/// Prints an error, which begins with its code.
+pub fn complain(error: &str) {
+    say(&format!("bsmpm-par: {}", headed(error, "error")));
 }
 
 /// Writes a line on a terminal that the next line overwrites.

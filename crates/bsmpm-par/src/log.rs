@@ -6,6 +6,7 @@
 use crate::cli::{Arguments, LogFormat, ProgressForm};
 use crate::launch;
 use bsmpm::control::Accepted;
+use bsmpm_messages::{code_of, headed};
 use bsmpm_scene::Case;
 use serde_json::json;
 use std::time::{Duration, Instant};
@@ -138,9 +139,9 @@ impl Log {
         self.print(Verbosity::Steps, kind, text);
     }
 
-    /// A warning, which begins with its code.
+    /// A warning, which begins with its code (the code of an indicator is that of a warning).
     pub fn warning(&self, kind: &str, text: &str) {
-        self.print(Verbosity::Warnings, kind, &format!("warning {text}"));
+        self.print(Verbosity::Warnings, kind, &headed(text, "warning"));
     }
 
     /// Why a run does not end well: printed however quiet it is.
@@ -150,6 +151,7 @@ impl Log {
 
     /// A failure, which begins with its code.
     pub fn failure(&self, text: &str) {
+        let text = &if code_of(text).is_some() { format!("error {text}") } else { format!("error: {text}") };
         match self.format {
             LogFormat::Json => self.print(Verbosity::Warnings, "failure", text),
             LogFormat::Text => self.print(Verbosity::Warnings, "failure", &format!("bsmpm-par: {text}")),

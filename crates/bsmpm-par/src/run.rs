@@ -177,7 +177,10 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
     /// A step was given up by a fault on demand, which strikes once.
     fn make_again(&mut self, step: u64) {
         self.fault = None;
-        self.warn(format!("step {step} converged and was rejected, as BSMPM_FAULT wants; it is made again"));
+        self.warn(format!(
+            "W0725: step {step} was rejected after it converged, as BSMPM_FAULT requests. It is repeated. Unset BSMPM_FAULT outside of \
+             tests."
+        ));
     }
 
     /// A warning, told and kept.

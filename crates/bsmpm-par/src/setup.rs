@@ -175,9 +175,9 @@ pub fn warnings(case: &Case, ranks: usize) -> Vec<String> {
         smoothing(case, bsmpm_scene::model::nominal_steps(case)).filter(|(length, size)| length > &(SMALL * size))
     {
         warnings.push(format!(
-            "modified-f-bar smooths the elastic strain once a step, whatever the step's length: over all steps along about \
-             {length:.2e} m, where the thinnest connected material has {size} m; results belong to their number of \
-             steps"
+            "W0729: `modified-f-bar` smooths strains over about {length:.2} m in all steps (limit: {:.2} m). Results depend on the \
+             number of steps. Use `consistent-f-bar`.",
+            SMALL * size
         ));
     }
     warnings

@@ -1,10 +1,11 @@
 //! The case file: read by rank 0, parsed by every rank from the same bytes.
 
 use crate::cli::Arguments;
-use crate::launch::say;
+use crate::launch::{complain, say};
 use crate::memory;
 use crate::setup;
 use bsmpm_io::exit::{CASE, MISSING};
+use bsmpm_messages::headed;
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -17,7 +18,7 @@ pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u
     let name = arguments.case.display().to_string();
     let bytes = broadcast(world, || {
         bsmpm_scene::load(&arguments.case).map_err(|error| {
-            say(&format!("bsmpm-par: {name}: {error}"));
+            complain(&format!("{name}: {error}"));
             if error.kind() == ErrorKind::InvalidData { CASE } else { MISSING }
         })
     })?;
@@ -81,6 +82,6 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         told.chain(chosen.iter().map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason))),
     );
     lines.extend(case.renamings.iter().map(|renaming| format!("note: {renaming}")));
-    lines.extend(setup::warnings(case, ranks).iter().map(|warning| format!("warning: {warning}")));
+    lines.extend(setup::warnings(case, ranks).iter().map(|warning| headed(warning, "warning")));
     lines.join("\n")
 }

@@ -1,6 +1,7 @@
 //! How indicators are printed: their codes, and their values with a unit.
 
 use bsmpm_io::manifest::Indicator;
+use bsmpm_messages::{code_of, without_code};
 use std::collections::BTreeMap;
 
 /// How a value is written.
@@ -14,62 +15,48 @@ enum Form {
     Times,
 }
 
-/// Name, code and form of every indicator. Codes are stable, and never used again.
-const KNOWN: [(&str, &str, Form); 28] = [
-    ("pressure-noise-average", "I0001", Form::Percent),
-    ("pressure-noise-plane", "I0002", Form::Percent),
-    ("quadrature-defect", "I0003", Form::Percent),
-    ("quadrature-defect-largest", "I0004", Form::Percent),
-    ("points-per-cell", "I0005", Form::Number),
-    ("compression", "I0006", Form::Percent),
-    ("force-measure", "I0007", Form::Times),
-    ("energy-measure", "I0008", Form::Times),
-    ("water-measure", "I0009", Form::Times),
-    ("water-balance", "I0010", Form::Percent),
-    ("energy-closure", "I0011", Form::Percent),
-    ("energy-loss", "I0012", Form::Percent),
-    ("energy-growth", "I0013", Form::Percent),
-    ("smoothing-length", "I0014", Form::Metres),
-    ("slip", "I0015", Form::Percent),
-    ("support-pull", "I0016", Form::Percent),
-    ("front-setback", "I0017", Form::Metres),
-    ("step-advance", "I0018", Form::Cells),
-    ("wall-velocity", "I0019", Form::Percent),
-    ("rigid-penetration", "I0020", Form::Cells),
-    ("interface-shift", "I0021", Form::Cells),
-    ("permeability-shift", "I0022", Form::Cells),
-    ("cells-across-footing", "I0023", Form::Number),
-    ("cells-across-opening", "I0024", Form::Number),
-    ("force-noise", "I0025", Form::Percent),
-    ("background-load-share", "I0026", Form::Percent),
-    ("stiffness-loss", "I0027", Form::Number),
-    ("background-work", "I0028", Form::Percent),
+/// The form of every indicator whose value is no part of a whole.
+const FORMS: [(&str, Form); 13] = [
+    ("points-per-cell", Form::Number),
+    ("force-measure", Form::Times),
+    ("energy-measure", Form::Times),
+    ("water-measure", Form::Times),
+    ("smoothing-length", Form::Metres),
+    ("front-setback", Form::Metres),
+    ("step-advance", Form::Cells),
+    ("rigid-penetration", Form::Cells),
+    ("interface-shift", Form::Cells),
+    ("permeability-shift", Form::Cells),
+    ("cells-across-footing", Form::Number),
+    ("cells-across-opening", Form::Number),
+    ("stiffness-loss", Form::Number),
 ];
 
-/// The code of an indicator by its name; empty for a name that is none.
-pub(super) fn code(name: &str) -> &'static str {
-    known(name).0
+fn form(name: &str) -> Form {
+    FORMS.iter().find(|(known, _)| *known == name).map_or(Form::Percent, |&(_, form)| form)
 }
 
-fn known(name: &str) -> (&'static str, Form) {
-    let found = KNOWN.iter().find(|(known, _, _)| *known == name);
-    found.map_or(("", Form::Number), |&(_, code, form)| (code, form))
+/// The text of an indicator, taken apart: its code, what it measures, and what to do. `which` is the one that is meant.
+pub(super) fn parts(text: &str, which: &str) -> [String; 3] {
+    let code = code_of(text).unwrap_or_default().to_owned();
+    let (measure, advice) = without_code(text).split_once(" is {value} ({range}). ").unwrap_or_default();
+    [code, measure.replace("{which}", which), advice.to_owned()]
 }
 
 /// All of them in a line.
 pub fn line(indicators: &BTreeMap<String, Indicator>) -> String {
-    let all = indicators.iter().map(|(name, found)| format!("{name} {}", known(name).1.of(found.value)));
+    let all = indicators.iter().map(|(name, found)| format!("{name} {}", form(name).of(found.value)));
     format!("Indicators: {}.", all.collect::<Vec<_>>().join(", "))
 }
 
 /// What is to be said of an indicator that is outside its usual range, its code first.
 pub fn description(name: &str, found: &Indicator) -> String {
-    let (code, form) = known(name);
+    let form = form(name);
     let range = match found.limits.filter(|_| found.ends_run()) {
         Some(limits) => format!("limit: {}", form.range(limits)),
         None => format!("usual: {}", form.range(found.usual)),
     };
-    format!("{code}: {} is {} ({range}). {}", found.meaning, form.of(found.value), found.advice)
+    format!("{}: {} is {} ({range}). {}", found.code, found.meaning, form.of(found.value), found.advice)
 }
 
 /// What is to be said of the indicators that end a run, by their names.
@@ -119,18 +106,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_indicator_has_a_code_of_its_own() {
-        let mut codes: Vec<&str> = KNOWN.iter().map(|(_, code, _)| *code).collect();
-        codes.sort_unstable();
-        codes.dedup();
-        assert_eq!(codes.len(), KNOWN.len());
-        assert!(codes.iter().all(|code| code.len() == 5 && code.starts_with('I')));
+    fn a_text_is_taken_apart() {
+        let text = "I0024: number of cells across {which} is {value} ({range}). The stress is off. Refine the grid.";
+        let expected = ["I0024", "number of cells across `body.0`", "The stress is off. Refine the grid."];
+        assert_eq!(parts(text, "`body.0`"), expected);
     }
 
     #[test]
     fn values_and_ranges_are_read_with_their_units() {
         let row = |value, usual| Indicator::new(value, "-", "numerical dissipation relative to the peak energy", usual);
-        let told = description("energy-loss", &row(0.1234, [-0.1, 0.1]).advising("Reduce `analysis.dt`."));
+        let told =
+            description("energy-loss", &row(0.1234, [-0.1, 0.1]).coded("I0012").advising("Reduce `analysis.dt`."));
         let expected = "I0012: numerical dissipation relative to the peak energy is 12 % (usual: -10 to 10 %). Reduce \
                         `analysis.dt`.";
         assert_eq!(told, expected);

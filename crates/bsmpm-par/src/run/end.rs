@@ -44,28 +44,35 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let mut failed = [0.0; 2];
         let mut run = self;
         run.tell_vacant();
+        let mut warnings = Vec::new();
         if let Some(ledger) = &mut run.ledger {
             failed[0] = f64::from(!ledger.judge());
             if let Ok(history) = table::read(&ledger.path().join(HISTORY)) {
                 ledger.manifest().limit_loads = limit_load::found(&run.case, &history);
             }
+            warnings = limit_load::warnings(&ledger.manifest().limit_loads);
             for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {
                 let number = |number: Option<f64>| number.map_or("-".to_owned(), |number| format!("{number}"));
                 let (value, least, most) = (number(check.value), number(check.min), number(check.max));
-                run.log.failure(&format!("check failed: {} = {value}, allowed: {least} to {most}", check.quantity));
+                let quantity = &check.quantity;
+                run.log.failure(&format!(
+                    "E0730: check of `{quantity}` failed: it is {value} (allowed: {least} to {most}). The run is complete, with exit \
+                     code 77. Look at history.csv, or change the limits of [[check]]."
+                ));
             }
         }
+        warnings.into_iter().for_each(|warning| run.warn(warning));
         run.judge_itself();
         if let Some(ledger) = &mut run.ledger {
             let ending = ledger.manifest().indicators.iter().filter(|(_, found)| found.ends_run());
             let ending: Vec<_> = ending.collect();
             for (name, found) in &ending {
-                run.log.failure(&format!("error {}", indicators::description(name, found)));
+                run.log.failure(&indicators::description(name, found));
             }
             if !ending.is_empty() {
                 failed[1] = 1.0;
                 let names: Vec<&str> = ending.iter().map(|(name, _)| name.as_str()).collect();
-                run.log.failure(&indicators::acceptance(&names));
+                run.log.cause("acceptance", &indicators::acceptance(&names));
             }
         }
         run.simulation.halo.maximum(&mut failed);

@@ -28,8 +28,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         if machine::has_reference_blas() {
             self.warn(
-                "the BLAS in use is the reference one: factorisations take several times as long as with an optimised one \
-                 (on Debian: libopenblas0-serial)"
+                "W0714: the linear algebra library (BLAS) is the slow reference version. Runs take several times as long. On Debian, \
+                 install libopenblas0-serial."
                     .into(),
             );
         }
@@ -75,35 +75,39 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             ),
         );
         if unbalance > UNBALANCED {
-            let sudden = self.case.sudden_loads();
-            let growing =
-                format!("{}: what acts in full from time 0 has no part in it: give a ramp", sudden.join(", "));
-            // Linear elastic equilibrium is lost by nothing but yield.
-            let advice = match &self.case.initial {
-                Some(Initial::AtRest(_)) if !sudden.is_empty() => &growing,
-                _ if !self.case.rigid.is_empty() => {
-                    "rigid bodies have no part in it: where they hold soil let gravity grow over a ramp, without [initial]"
-                }
-                Some(Initial::Elastic) => {
-                    "the elastic stress is beyond yield; equilibrium = \"plastic\" leads it to equilibrium before the first \
-                     step, and gravity with a ramp and no [initial] lets the body yield as it is loaded"
-                }
-                _ => {
-                    "k0 is for level ground and layers; equilibrium = \"plastic\" leads it to equilibrium before the first \
-                     step, gravity = \"elastic\" balances other shapes, too"
-                }
-            };
-            self.warn(format!(
-                "the stress at the start leaves {:.1} % of the largest force unbalanced: the first step moves the body by it \
-                 ({advice})",
-                100.0 * unbalance
-            ));
+            let warning = self.against_unbalance(100.0 * unbalance);
+            self.warn(warning);
         }
         if yielding > 0 {
             self.warn(format!(
-                "the stress at the start is beyond yield at {yielding} point(s): the first step returns it to the yield \
-                 surface, and moves the body by what is lost; [initial] equilibrium = \"plastic\" does so before it"
+                "W0719: the initial stress exceeds the strength at {yielding} material point(s). The first step moves the soil. Set \
+                 `initial.equilibrium = \"plastic\"`."
             ));
+        }
+    }
+
+    /// What to do against an out-of-balance initial stress, in % of the largest force.
+    fn against_unbalance(&self, percent: f64) -> String {
+        let sudden = self.case.sudden_loads();
+        // Linear elastic equilibrium is lost by nothing but yield.
+        match &self.case.initial {
+            Some(Initial::AtRest(_)) if !sudden.is_empty() => format!(
+                "W0715: the initial stress leaves {percent:.1} % of the largest force unbalanced (limit: 2 %), as it excludes {}. The \
+                 first step moves the soil. Apply them over a `ramp`.",
+                sudden.join(", ")
+            ),
+            _ if !self.case.rigid.is_empty() => format!(
+                "W0716: the initial stress leaves {percent:.1} % of the largest force unbalanced (limit: 2 %), as it excludes rigid \
+                 bodies. The soil moves. Use `gravity.ramp` instead of [initial]."
+            ),
+            Some(Initial::Elastic) => format!(
+                "W0717: the elastic initial stress leaves {percent:.1} % of the largest force unbalanced (limit: 2 %), as the soil \
+                 yields. The first step moves it. Set `initial.equilibrium = \"plastic\"`."
+            ),
+            _ => format!(
+                "W0718: the initial stress by k0 leaves {percent:.1} % of the largest force unbalanced (limit: 2 %). The first step \
+                 moves the soil. Set `initial.equilibrium = \"plastic\"`."
+            ),
         }
     }
 }
