@@ -6,6 +6,7 @@
 use crate::cli::{Arguments, LogFormat, ProgressForm};
 use crate::launch;
 use bsmpm::control::Accepted;
+use bsmpm::error::StepError;
 use bsmpm_messages::{code_of, headed};
 use bsmpm_scene::Case;
 use serde_json::json;
@@ -78,9 +79,7 @@ impl Log {
 
     /// One accepted step, its number and the seconds since the start.
     pub fn step(&mut self, number: u64, accepted: &Accepted, wall: f64) {
-        for error in &accepted.rejected {
-            self.print(Verbosity::Attempts, "cut", &format!("step {number}: attempt rejected: {error}"));
-        }
+        self.rejected(number, &accepted.rejected);
         let report = &accepted.report;
         let done = accepted.t / self.end;
         match self.format {
@@ -104,6 +103,13 @@ impl Log {
             _ => {}
         }
         self.show_progress(number, accepted.t, wall);
+    }
+
+    /// Attempts at a step that were rejected.
+    pub fn rejected(&self, number: u64, errors: &[StepError]) {
+        for error in errors {
+            self.print(Verbosity::Attempts, "cut", &format!("step {number}: attempt rejected: {error}"));
+        }
     }
 
     /// How far the run is, if that is due.

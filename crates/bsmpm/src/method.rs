@@ -68,6 +68,5 @@ impl Criteria {
 const WATER: f64 = 1e-4;
 
 fn against(measure: f64, tolerance: f64) -> String {
-    let verdict = if measure < tolerance { "converged" } else { "too large" };
-    format!("{measure:.1e} ({verdict}, tolerance {tolerance:e})")
+    format!("{measure:.1e} (tolerance {tolerance:e})")
 }

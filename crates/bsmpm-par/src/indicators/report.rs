@@ -52,7 +52,8 @@ pub fn line(indicators: &BTreeMap<String, Indicator>) -> String {
 /// What is to be said of an indicator that is outside its usual range, its code first.
 pub fn description(name: &str, found: &Indicator) -> String {
     let form = form(name);
-    let range = match found.limits.filter(|_| found.ends_run()) {
+    let range = match found.limits.filter(|_| found.failed) {
+        Some(limits) if found.accepted => format!("limit: {}, accepted by output.accept", form.range(limits)),
         Some(limits) => format!("limit: {}", form.range(limits)),
         None => format!("usual: {}", form.range(found.usual)),
     };

@@ -242,7 +242,7 @@ fn not_converged(
     }
     lines.extend(
         [
-            "The load may exceed the strength of the soil. Look at the last frame, and run `bsmpm fos`.",
+            "The load may exceed the strength. Look at the last frame, and run `bsmpm fos`.",
             "Look at the worst nodes. Next to nearly empty cells a larger `solver.background` helps.",
             "Increase `analysis.steps`, or set `stabilisation.method`, if the soil is nearly incompressible or yields.",
         ]

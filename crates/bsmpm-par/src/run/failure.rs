@@ -14,16 +14,17 @@ use bsmpm_ranks::launch;
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Ends the run after a step that failed.
     pub(super) fn fail(mut self, failure: &Failure) -> u8 {
-        let (t, dt) = (short(failure.t), short(failure.dt));
+        let t = short(failure.t);
         let unit = self.time_unit();
         let made = self.simulation.steps();
         let subject = match (failure.attempts.last(), failure.attempts.len()) {
             (Some(StepError::EnergyMade { .. }), _) => format!("step {made} at t = {t}{unit} was the last"),
-            (_, 1) => format!("step {} failed at t = {t}{unit} (dt = {dt})", made + 1),
-            (_, attempts) => {
-                format!("step {} failed at t = {t}{unit} in {attempts} attempts (last dt = {dt})", made + 1)
-            }
+            (_, 1) => format!("step {} failed (t = {t}{unit})", made + 1),
+            (_, attempts) => format!("step {} failed (t = {t}{unit}, {attempts} attempts)", made + 1),
         };
+        if let Some((_, rejected)) = failure.attempts.split_last() {
+            self.log.rejected(made + 1, rejected);
+        }
         if let Some(ledger) = &mut self.ledger {
             ledger.attempts(failure.attempts.len() - 1, failure.counts);
         }

@@ -8,6 +8,7 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm_io::exit;
 use bsmpm_io::failure::FAILURE;
 use bsmpm_io::manifest::Summary;
+use bsmpm_messages::code_of;
 use mpi::topology::Communicator;
 
 /// What ends a run that is continued later.
@@ -53,7 +54,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if manifest.summary.settled_steps > 0 {
             self.log.line("settled", &settled(&manifest.summary));
         }
-        let warnings = manifest.warnings.len() + unusual.count();
+        let of_indicators = unusual.map(|(_, found)| Some(found.code.as_str()));
+        let of_warnings = manifest.warnings.iter().map(|warning| code_of(warning));
+        let codes: Vec<Option<&str>> = of_warnings.chain(of_indicators).collect();
         self.log.line("end", &self.work(&manifest.summary, code));
         self.log.detail("cost", &cost(&manifest.summary));
         self.log.line(
@@ -70,10 +73,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             }
             _ => self.log.line("next", &format!("Pictures: `bsmpm plot {directory}`.")),
         }
-        if warnings > 0 {
-            let plural = if warnings == 1 { "warning" } else { "warnings" };
-            let text =
-                format!("{warnings} {plural}, listed above and in run.json. `bsmpm explain CODE` explains a code.");
+        if let Some(text) = counted(&codes) {
             self.log.line("warnings", &text);
         }
     }
@@ -108,6 +108,18 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let ranks = self.universe.world().size().unsigned_abs() as usize;
         let command = self.arguments.continuing(ranks);
         format!("The run was stopped by {cause}. Its last converged state is saved. To continue: {command}")
+    }
+}
+
+/// How many warnings there are, by their codes, and where they are explained.
+fn counted(codes: &[Option<&str>]) -> Option<String> {
+    let first = codes.iter().flatten().next().unwrap_or(&"CODE");
+    match codes.len() {
+        0 => None,
+        1 => Some(format!("1 warning, listed above and in run.json. It is explained by `bsmpm explain {first}`.")),
+        all => {
+            Some(format!("{all} warnings, listed above and in run.json. They are explained by `bsmpm explain CODE`."))
+        }
     }
 }
 

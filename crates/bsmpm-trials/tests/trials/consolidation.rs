@@ -148,10 +148,7 @@ fn a_drain_that_leaves_the_grid_is_told_of() {
         manifest(&scratch.path(name)).warnings
     };
     let told = run("short", "title=short");
-    assert!(
-        told.len() == 1 && told[0].starts_with("drain.0: at t = ") && told[0].contains("out of the grid"),
-        "{told:?}"
-    );
+    assert!(told.len() == 1 && told[0].starts_with("W0708: ") && told[0].contains("`drain.0`"), "{told:?}");
     let further = run("further", "grid.upper=[0.4, 1.1]");
     assert!(further.is_empty(), "{further:?}");
 }
@@ -173,7 +170,7 @@ fn ground_that_leaves_a_drained_face_is_told_of() {
     let load = "traction.0.stress=[0, -1e5]";
     let short = "analysis={ type = \"consolidation\", end = \"5e5 s\", dt = \"500 s\", growth = 1.2 }";
     let told = run("face", &[face, load, short]);
-    assert!(told.len() == 2 && told[0].contains("moved off") && told[1].contains("is sealed"), "{told:?}");
+    assert!(told.len() == 2 && told[0].starts_with("W0711: ") && told[1].starts_with("W0710: "), "{told:?}");
     let light = run("light", &[face, "traction.0.stress=[0, -8e3]", short]);
     assert!(light.is_empty(), "{light:?}");
     let surface = run("surface", &[load, short]);
