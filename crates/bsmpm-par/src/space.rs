@@ -47,11 +47,11 @@ pub fn admit<K: Kinematics<D>, const D: usize>(
     let warning = |room| {
         format!("W0722: the disk of {room}. The run may stop early. Free space on the disk, or write fewer frames.")
     };
-    let told = match shortage {
+    let outcome = match shortage {
         Some(room) if arguments.strict_space => Err(refused(room)),
         room => Ok(room.map(warning)),
     };
-    agree(world, told)
+    agree(world, outcome)
 }
 
 impl Need {
@@ -100,7 +100,7 @@ impl Need {
         frames.saturating_add(self.checkpoints.saturating_mul(self.checkpoint))
     }
 
-    /// What is to be told if there is less.
+    /// What is to be reported if there is less.
     fn shortage(&self, held: &OutputDirectory, emptied: bool) -> Option<String> {
         // A system that cannot tell is no reason to say anything.
         let free = disk::free(held.path()).ok()? + if emptied { doomed(held) } else { 0 };

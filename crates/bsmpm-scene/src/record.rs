@@ -124,9 +124,9 @@ impl Context {
                 (None, Presence::Optional | Presence::Later | Presence::Retired) => {}
             }
         }
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for group in table.exclusive {
-            exclusive(group, written, (&record, &mut told), report);
+            exclusive(group, written, (&record, &mut reported), report);
         }
         record
     }
@@ -235,18 +235,18 @@ pub(crate) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-/// What is wrong with a group of keys; of two of which it was `told` by another group nothing.
+/// What is wrong with a group of keys; of two of which it was `reported` by another group nothing.
 fn exclusive<'a>(
     group: &Group,
     written: &'a DocumentTable,
-    (record, told): (&Record, &mut Vec<[&'a str; 2]>),
+    (record, reported): (&Record, &mut Vec<[&'a str; 2]>),
     report: &mut Report<'_>,
 ) {
     let given: Vec<_> = group.keys.iter().filter_map(|key| written.get(key)).collect();
     if let [first, second, ..] = given[..]
-        && !told.contains(&[&first.key, &second.key])
+        && !reported.contains(&[&first.key, &second.key])
     {
-        told.push([&first.key, &second.key]);
+        reported.push([&first.key, &second.key]);
         let message = format!("`{}` is given too; only one of {} may be", first.key, group.keys.join(", "));
         report.error(second.origin, &join(&record.path, &second.key), message);
     }

@@ -82,11 +82,11 @@ pub struct CheckpointState {
     pub rigid_accelerations: Vec<Option<[f64; 3]>>,
     /// What the histories go on from.
     pub record: RecordState,
-    /// Strips of which it was told that they hold nothing and, their number added, that they have let go; drains and
-    /// inflows without ground, three times that number added.
+    /// Strips of which it was reported that they hold nothing and, their number added, that they have let go; drains
+    /// and inflows without ground, three times that number added.
     pub told_strips: BTreeSet<usize>,
-    /// Rigid bodies of which it was told that they came too fast (twice their number) or go into the soil (and one),
-    /// and behind those pairs that have met, and bodies that went through a face.
+    /// Rigid bodies of which it was reported that they came too fast (twice their number) or go into the soil (and
+    /// one), and behind those pairs that have met, and bodies that went through a face.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub told_rigid: BTreeSet<usize>,
     /// The step of the newest frame.

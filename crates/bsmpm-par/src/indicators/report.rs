@@ -116,11 +116,11 @@ mod tests {
     #[test]
     fn values_and_ranges_are_read_with_their_units() {
         let row = |value, usual| Indicator::new(value, "-", "numerical dissipation relative to the peak energy", usual);
-        let told =
+        let text =
             description("energy-loss", &row(0.1234, [-0.1, 0.1]).coded("I0012").advising("Reduce `analysis.dt`."));
         let expected = "I0012: numerical dissipation relative to the peak energy is 12 % (usual: -10 to 10 %). Reduce \
                         `analysis.dt`.";
-        assert_eq!(told, expected);
+        assert_eq!(text, expected);
         let failed = row(0.8, [0.0, 0.02]).limited(Some([0.0, 0.1]), false);
         assert!(description("force-noise", &failed).contains("is 80 % (limit: below 10 %)"));
         assert_eq!(Form::Number.range([10.0, 1e6]), "at least 10");

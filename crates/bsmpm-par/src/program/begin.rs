@@ -68,7 +68,7 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     }
     let Task { case, arguments, .. } = &task;
     if let RunStart::Complete(code) = start {
-        return Ok(told(
+        return Ok(remark(
             universe,
             code,
             &format!("The run in `{}` is already complete.", arguments.directory().display()),
@@ -77,8 +77,8 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     let timers = Rc::new(Timers::default());
     let seam = (universe, petsc, choice);
     let mut scene = scene::<K, D>(seam, case, cut, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
-    let told = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
-    start.warn(told);
+    let warning = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
+    start.warn(warning);
     start.warn(crowded(&universe.world(), arguments.threads));
     let before = before(&start, &arguments.directory());
     let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;
@@ -91,9 +91,9 @@ fn run_in<K: Kinematics<D>, const D: usize>(
 }
 
 /// Prints a remark on rank 0 and hands the exit code on.
-fn told(universe: &Universe, code: u8, remark: &str) -> u8 {
+fn remark(universe: &Universe, code: u8, text: &str) -> u8 {
     if universe.world().rank() == 0 {
-        launch::say(&format!("bsmpm-par: {remark}"));
+        launch::say(&format!("bsmpm-par: {text}"));
     }
     code
 }

@@ -62,9 +62,9 @@ fn is_later(change: &Difference) -> bool {
     number(&change.was).zip(number(&change.is)).is_none_or(|(was, is)| is > was)
 }
 
-/// How a run begins anew in whose directory there is no checkpoint: only if it was killed or stopped before it had one,
-/// so that nothing is deleted that had been kept.
-pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -> Result<Beginning, Refusal> {
+/// How a run begins again in whose directory there is no checkpoint: only if it was killed or stopped before it had
+/// one, so that nothing is deleted that had been kept.
+pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -> Result<Beginning, Refusal> {
     let refused = |reason: String| Err(Refusal::new(exit::CHECKPOINT, reason));
     if let Some(bad) = passed_over.first() {
         return refused(bad.clone());
@@ -78,9 +78,9 @@ pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -
     // One that was stopped has a checkpoint, unless that was before it had found its first state.
     let kept_nothing = [Some(exit::WRITE), Some(exit::STOPPED)].contains(&run.exit_code);
     if run.status != Status::Running && !kept_nothing {
-        let told = format!("{:?}", run.status).to_lowercase();
+        let ended = format!("{:?}", run.status).to_lowercase();
         return refused(format!(
-            "E0726: the run in the output directory has {told} without a checkpoint. It cannot be continued. Start it again with \
+            "E0726: the run in the output directory has {ended} without a checkpoint. It cannot be continued. Start it again with \
              `--force`."
         ));
     }

@@ -12,7 +12,7 @@ use bsmpm_scene::{Body, Case, GridSpec, Initial, Rigid};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::CommunicatorCollectives;
 
-/// Places told of one failure.
+/// Places reported of one failure.
 const MOST_PLACES: usize = 10;
 
 /// The report of `failure` in step `step` of a case, from all ranks. Collective.
@@ -47,7 +47,7 @@ fn loose(error: &StepError, case: &Case) -> Option<String> {
     case.rigid.get(*body).map(|rigid| rigid.name.clone())
 }
 
-/// The error whose places are told: the last one, or where that names none the last that iterated.
+/// The error whose places are reported: the last one, or where that names none the last that iterated.
 fn places_of<'a>(last: &'a StepError, iterated: Option<&'a StepError>) -> &'a StepError {
     if matches!(last, StepError::Solve(_)) { iterated.unwrap_or(last) } else { last }
 }
@@ -84,13 +84,13 @@ fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<
     world.all_gather_into(&own[..], &mut all[..]);
     let mut places: Vec<&[f64]> = all.chunks_exact(6).filter(|place| place.iter().all(|n| n.is_finite())).collect();
     places.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let told = |place: &&[f64]| Worst {
+    let named = |place: &&[f64]| Worst {
         kind: kind.into(),
         id: place[1] as u64,
         position: place[3..3 + dims].to_vec(),
         force: (kind == "node").then_some(place[2]),
     };
-    places.iter().take(MOST_PLACES).map(told).collect()
+    places.iter().take(MOST_PLACES).map(named).collect()
 }
 
 fn advice(error: &StepError, case: &Case) -> Vec<String> {

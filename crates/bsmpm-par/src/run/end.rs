@@ -27,7 +27,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         self.end(Status::Stopped, exit::STOPPED)
     }
 
-    /// Ends the run before it has a state to go on from: it starts anew.
+    /// Ends the run before it has a state to continue from.
     pub(super) fn stop_at_start(mut self) -> u8 {
         self.log.cause(
             "stop",
@@ -170,7 +170,7 @@ fn linear(before: &BTreeMap<String, SolverNames>, tallies: &Tallies) -> BTreeMap
     all
 }
 
-/// What the ranks have told each other `before` and since then, of which the sums over the ranks are known and the
+/// What the ranks have sent each other `before` and since then, of which the sums over the ranks are known and the
 /// largest.
 fn communication(
     before: &BTreeMap<String, Communication>,

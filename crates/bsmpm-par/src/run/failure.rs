@@ -1,4 +1,4 @@
-//! Steps that cannot be made: what is told, and the exit code.
+//! Steps that cannot be made: what is reported, and the exit code.
 
 use super::{Run, diagnosis};
 use crate::log::short;

@@ -1,4 +1,4 @@
-//! What a run tells and does before its first step.
+//! What a run reports and does before its first step.
 
 use super::Run;
 use crate::log::short;
@@ -12,11 +12,11 @@ use bsmpm_io::manifest::{ManifestInitial, ManifestSettling};
 use bsmpm_scene::Initial;
 
 /// Part of the largest force beyond which an out-of-balance stress at the start is warned of. Level ground by k0 leaves
-/// .8 % in four cells of depth: the points' quadrature of linear stress.
+/// 0.8 % in four cells of depth: the points' quadrature of linear stress.
 const UNBALANCED: f64 = 0.02;
 
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
-    /// Tells what is to be told, and gives the points their stress at the start. Fails on all ranks.
+    /// Reports what is known, and gives the points their stress at the start. Fails on all ranks.
     pub(super) fn begin(&mut self) -> Result<(), StepError> {
         for renaming in &self.case.renamings {
             self.log.line("note", &format!("note: {renaming}"));

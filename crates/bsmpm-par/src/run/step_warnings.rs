@@ -86,7 +86,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     }
 
     /// A strip that holds nothing, or no longer the material that it held, does nothing of what it is there for, which
-    /// no other number tells.
+    /// no other number shows.
     pub(super) fn tell_strips_without_material(&mut self, accepted: &Accepted) {
         for (number, strip) in accepted.report.strips.iter().enumerate() {
             let on = &self.simulation.model.boundary.strips[number];
@@ -96,7 +96,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let points = on.points.len();
             let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), short(accepted.t));
             let mut kind = number;
-            let told = if strip.held == 0 {
+            let warning = if strip.held == 0 {
                 format!(
                     "W0705: `{name}` touches no material at t = {t}. It has no effect. Check its position and its path."
                 )
@@ -116,7 +116,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 continue;
             };
             if self.told_strips.insert(kind) {
-                self.warn(told);
+                self.warn(warning);
             }
         }
     }
@@ -188,7 +188,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
     }
 
-    /// Material that leaves is told when the first does, and counted in the manifest.
+    /// Material that leaves is reported when the first does, and counted in the manifest.
     pub(super) fn tell_outflow(&mut self, accepted: &Accepted) {
         let Some(outflow) = &accepted.report.outflow else { return };
         if self.recorder.left().points == 0 {

@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 const HARD: [&str; 6] =
     ["--set", "solver.nonlinear=broyden", "--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-15"];
 
-fn steps_told(output: &Output) -> Vec<u64> {
+fn steps_reported(output: &Output) -> Vec<u64> {
     let number = |line: &str| line.strip_prefix("step ")?.split_whitespace().next()?.parse().ok();
     output.stderr.lines().filter_map(number).collect()
 }
@@ -48,7 +48,7 @@ fn a_short_run_without_a_terminal_prints_its_summary_from_one_rank() {
 fn a_batch_job_prints_a_line_now_and_then() {
     let scratch = Scratch::with_case(&endless());
     let output = scratch.mpirun(2, &["case.toml", "--max-wall", "00:00:14"]).expect(75);
-    assert_eq!((progress(&output.stderr), steps_told(&output).len()), (1, 0), "{output:#?}");
+    assert_eq!((progress(&output.stderr), steps_reported(&output).len()), (1, 0), "{output:#?}");
     output.says_once("stopped by --max-wall");
 }
 
@@ -93,7 +93,7 @@ fn verbose_prints_every_step_and_twice_verbose_every_rejected_attempt() {
     let scratch = Scratch::with_case(COLUMN);
     for arguments in [["-v", "--force"], ["-vv", "--force"]] {
         let verbose = scratch.mpirun(2, &[&["case.toml"], &arguments[..]].concat()).expect(0);
-        assert_eq!(steps_told(&verbose), [1, 2, 3, 4, 5]);
+        assert_eq!(steps_reported(&verbose), [1, 2, 3, 4, 5]);
         verbose.says_once("Indicators: ");
         verbose.says_once("Cost: ");
     }
@@ -142,7 +142,7 @@ fn a_json_log_is_one_object_a_line() {
 }
 
 #[test]
-fn warnings_of_the_case_are_told_once_and_kept() {
+fn warnings_of_the_case_are_reported_once_and_kept() {
     let scratch = Scratch::with_case(COLUMN);
     let output = scratch.mpirun(2, &["case.toml", "--set", "output.every=2"]).expect(0);
     output.says_once("beyond the end of the run");
