@@ -69,7 +69,7 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         format!("nodes            {}", estimate.nodes),
         format!("unknowns         at most {}{pressures}", estimate.unknowns),
         format!("memory           about {} MiB on each of {ranks} rank(s){newton}", each(estimate.bytes)),
-        format!("ranks            at most {}, of use about {}", case.most_ranks(), estimate.useful_ranks),
+        format!("ranks            at most {}, useful: about {}", case.most_ranks(), estimate.useful_ranks),
         format!("nominal steps    {}", bsmpm_scene::model::nominal_steps(case)),
     ];
     if let Some(narrowest) = &case.opening {
