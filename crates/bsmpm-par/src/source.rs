@@ -5,7 +5,7 @@ use crate::launch::{complain, say};
 use crate::memory;
 use crate::setup;
 use bsmpm_io::exit::{CASE, MISSING};
-use bsmpm_messages::headed;
+use bsmpm_messages::{headed, with_context};
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};

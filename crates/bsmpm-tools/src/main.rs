@@ -25,11 +25,3 @@ fn main() -> ExitCode {
         }
     }
 }
-
-/// An error as it is printed. Each of those of a case says itself that it is one.
-fn printed(error: &Error) -> String {
-    match error {
-        Error::BadCase { .. } => error.to_string(),
-        other => headed(&other.to_string(), "error"),
-    }
-}
