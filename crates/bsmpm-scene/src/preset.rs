@@ -234,7 +234,7 @@ impl Completion<'_, '_> {
             _ => {
                 let Choice { key, word, origin } = self.choice;
                 let reason = format!("\"{word}\" cannot choose {table}.{}, which follows from {basis}", keys[0]);
-                self.report.error(origin, key, reason);
+                self.report.consequence(origin, key, reason, scene::BASIS);
             }
         }
     }

@@ -5,12 +5,15 @@ mod value;
 
 use crate::document::{self, DocumentTable, Node, Value};
 use crate::error::Origin;
-use crate::nearest::nearest;
-use crate::report::{Report, shortened};
-use crate::schema::{Group, Key, Kind, Presence, Table, answer};
+use crate::report::Report;
+use crate::schema::{Group, Key, Kind, Presence, Table};
+use crate::slips;
 use crate::unit::Dimension;
 use crate::words::{AnalysisType, Geometry, Word};
 pub(crate) use value::UNREAD;
+
+/// Keys whose words stand for others, which are missing where these are wrong.
+const FILLED_BY: &[&str] = &["accuracy", "analysis.purpose"];
 
 /// A table whose keys and values are as the schema says.
 #[derive(Clone, Debug)]
@@ -98,7 +101,7 @@ impl Context {
         path: &str,
         report: &mut Report<'_>,
     ) -> Record {
-        self.unknown_keys(table, written, path, report);
+        slips::report_unknown(table, written, path, report);
         let mut record = Record { path: path.to_owned(), origin, root: self.root, table, fields: Vec::new() };
         for key in table.keys {
             let path = join(path, key.name);
@@ -114,7 +117,8 @@ impl Context {
                     record.fields.push(RecordField { key: key.name, origin: entry.node.origin, written: true, datum });
                 }
                 (None, Presence::Required) => {
-                    report.error(origin, &path, format!("missing; it is {}", key.kind));
+                    let message = format!("missing; it is {}", key.kind);
+                    report.missing(origin, &record.path, &[key.name], message, FILLED_BY);
                     record.fields.push(RecordField { key: key.name, origin, written: false, datum: None });
                 }
                 (None, Presence::Default(text)) => {
@@ -202,33 +206,6 @@ impl Context {
         }
         (records.len() == items.len()).then_some(Datum::Records(records))
     }
-
-    fn unknown_keys(self, table: &'static Table, written: &DocumentTable, path: &str, report: &mut Report<'_>) {
-        const SHOWN: usize = 50;
-        let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
-        for entry in unknown.by_ref().take(SHOWN) {
-            report.error(entry.origin, &join(path, &entry.key), self.unknown_key(table, &entry.key));
-        }
-        if let Some(entry) = unknown.next() {
-            let message = format!("{} more unknown keys from here on", unknown.count() + 1);
-            report.error(entry.origin, path, message);
-        }
-    }
-
-    fn unknown_key(self, table: &'static Table, key: &str) -> String {
-        if let Some(answer) = answer(table, key) {
-            return format!("unknown key `{}` in {}: {answer}", shortened(key), table.header);
-        }
-        let names = || table.keys.iter().filter(|key| key.presence != Presence::Retired).map(|key| key.name);
-        let elsewhere = || self.root.all().into_iter().find(|other| other.key(key).is_some());
-        let hint = match (nearest(key, names()), elsewhere()) {
-            (Some(name), _) => format!("; did you mean `{name}`?"),
-            (None, Some(other)) => format!("; `{key}` belongs to {}", other.header),
-            (None, None) => String::new(),
-        };
-        let known: Vec<&str> = names().collect();
-        format!("unknown key `{}` in {}{hint} (known: {})", shortened(key), table.header, known.join(", "))
-    }
 }
 
 pub(crate) fn join(path: &str, key: &str) -> String {
@@ -251,7 +228,8 @@ fn exclusive<'a>(
         report.error(second.origin, &join(&record.path, &second.key), message);
     }
     if given.is_empty() && group.required {
-        report.error(record.origin, &record.path, format!("missing: one of {}", group.keys.join(", ")));
+        let message = format!("missing: one of {}", group.keys.join(", "));
+        report.missing(record.origin, &record.path, group.keys, message, FILLED_BY);
     }
 }
 
@@ -299,6 +277,17 @@ impl Record {
     /// Path of a key of this table.
     pub(crate) fn path_of(&self, key: &str) -> String {
         join(&self.path, key)
+    }
+
+    /// Records an error about the key that follows from another one if that is about one of the `causes`.
+    pub(crate) fn consequence(
+        &self,
+        key: &str,
+        message: impl Into<String>,
+        causes: &[&str],
+        report: &mut Report<'_>,
+    ) {
+        report.consequence(self.place(key), &self.path_of(key), message, causes);
     }
 
     /// Records an error about the key.

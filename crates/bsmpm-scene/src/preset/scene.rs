@@ -13,6 +13,24 @@ pub(super) const STEPS: &str = "`type`, the cells and, in dynamics, `end` and yo
                                 materials, in statics what is moved, and never with \
                                 type \"consolidation\": give dt and growth; 1e8 at most";
 
+/// Keys without which neither cells nor steps can be chosen.
+pub(super) const BASIS: &[&str] = &[
+    "analysis.type",
+    "analysis.end",
+    "body",
+    "boundary",
+    "footing",
+    "geometry",
+    "grid.lower",
+    "grid.upper",
+    "material",
+    "point_load",
+    "prescribed",
+    "rigid",
+    "shaking",
+    "traction",
+];
+
 /// Steps at most that are filled in: more are the author's to ask for.
 const MOST_STEPS: f64 = 1e8;
 
