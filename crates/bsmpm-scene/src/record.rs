@@ -128,9 +128,9 @@ impl Context {
                 (None, Presence::Optional | Presence::Later | Presence::Retired) => {}
             }
         }
-        let mut told = Vec::new();
+        let (mut told, mut missing) = (Vec::new(), Vec::new());
         for group in table.exclusive {
-            exclusive(group, written, (&record, &mut told), report);
+            exclusive(group, written, (&record, &mut told), &mut missing, report);
         }
         record
     }
@@ -212,11 +212,13 @@ pub(crate) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-/// What is wrong with a group of keys; of two of which it was `told` by another group nothing.
+/// What is wrong with a group of keys; nothing of two of which it was `told` by another group, nor of a group that has
+/// keys in common with one of which all are `missing`.
 fn exclusive<'a>(
-    group: &Group,
+    group: &'static Group,
     written: &'a DocumentTable,
     (record, told): (&Record, &mut Vec<[&'a str; 2]>),
+    missing: &mut Vec<&'static str>,
     report: &mut Report<'_>,
 ) {
     let given: Vec<_> = group.keys.iter().filter_map(|key| written.get(key)).collect();
@@ -227,7 +229,9 @@ fn exclusive<'a>(
         let message = format!("`{}` is given too; only one of {} may be", first.key, group.keys.join(", "));
         report.error(second.origin, &join(&record.path, &second.key), message);
     }
-    if given.is_empty() && group.required {
+    let is_told = group.keys.iter().any(|key| missing.contains(key));
+    if given.is_empty() && group.required && !is_told {
+        missing.extend(group.keys);
         let message = format!("missing: one of {}", group.keys.join(", "));
         report.missing(record.origin, &record.path, group.keys, message, FILLED_BY);
     }

@@ -108,7 +108,15 @@ impl ValueReader<'_, '_> {
     }
 
     fn unexpected<T>(&mut self, node: &Node) -> Option<T> {
-        self.fail(node, format!("expected {}, found {}", self.kind, node.show()))
+        let message = format!("expected {}, found {}", self.kind, node.show());
+        match self.kind {
+            // How many numbers there are follows from the number of dimensions.
+            Kind::Vector(..) | Kind::PairProfile(..) | Kind::GradientVector(_) | Kind::Either(..) | Kind::Course(_) => {
+                self.report.consequence(node.origin, self.path, message, &["geometry"]);
+                None
+            }
+            _ => self.fail(node, message),
+        }
     }
 
     /// A file that was named where none is read.

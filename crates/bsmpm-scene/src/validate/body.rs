@@ -30,7 +30,7 @@ pub(super) fn read_all(
 ) -> Option<Vec<Body>> {
     let records = root.records("body");
     if root.gives("body") && records.is_empty() {
-        root.error("body", "at least one [[body]] is needed", report);
+        root.consequence("body", "at least one [[body]] is needed", &["body"], report);
     }
     if records.len() > MOST {
         root.error("body", format!("{} bodies; at most {MOST} are possible", records.len()), report);
@@ -177,7 +177,8 @@ fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<u
     let found = named.iter().position(|(known, _)| known == name);
     if found.is_none() {
         let hint = hint(name, named.iter().map(|(known, _)| known.as_str()));
-        record.error("material", format!("there is no [material.{}]{hint}", shortened(name)), report);
+        let message = format!("there is no [material.{}]{hint}", shortened(name));
+        record.consequence("material", message, &["material"], report);
     }
     found
 }

@@ -43,7 +43,8 @@ fn read(
     let material = material(record, materials, report);
     let stages = record.records("stage");
     if record.gives("stage") && stages.is_empty() {
-        record.error("stage", "at least one stage is needed", report);
+        let causes: &[&str] = &[&record.path_of("stage")];
+        record.consequence("stage", "at least one stage is needed", causes, report);
     }
     let mut undrained = false;
     let mut read = Vec::with_capacity(stages.len());

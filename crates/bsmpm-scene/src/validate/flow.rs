@@ -25,6 +25,8 @@ use bsmpm::water::retention::{Curve, Measured, Retention};
 const WATER: f64 = 9810.0;
 /// Parts of a cell by which a body may be off a face that it lies at.
 const AT: f64 = 1e-9;
+/// Keys without which it is not known where permeable soil is.
+const PERMEABLE: &[&str] = &["body", "material"];
 /// Permeability, m/s, beyond which a number is taken for a slip: that of gravel without sand.
 const MOST_PERMEABLE: f64 = 1.0;
 
@@ -96,7 +98,8 @@ fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64>
     const KEY: &str = "suction";
     let Some(water) = root.record("water").filter(|water| water.gives(KEY)) else { return Some(f64::INFINITY) };
     if !retains {
-        water.error(KEY, "no soil keeps water under suction: give a material a retention", report);
+        let message = "no soil keeps water under suction: give a material a retention";
+        water.consequence(KEY, message, &["material"], report);
     }
     if ["level", "level_path", "line", "line_path"].iter().all(|key| !water.gives(key)) {
         water.error(KEY, "is that above a level: give level, level_path, line or line_path", report);
@@ -279,7 +282,7 @@ impl Ground<'_> {
                     format!("no body is at {at:?} at the start; allowed: half a spacing of points from one")
                 }
             };
-            record.error(key, message, report);
+            record.consequence(key, message, PERMEABLE, report);
             return None;
         }
         Some(())
@@ -367,7 +370,7 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
             "no body of permeable soil lies at the face, which is at {} = {at}: give surface = true, or from and to",
             ["x", "y", "z"][face.axis]
         );
-        record.error("face", message, report);
+        record.consequence("face", message, PERMEABLE, report);
         return None;
     }
     Some(face)
@@ -390,7 +393,8 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     let shift = |at: [f64; 2]| [0, 1].map(|axis| lower[axis] + at[axis]);
     let pieces: Vec<[[f64; 2]; 2]> = pieces.into_iter().map(|piece| piece.map(shift)).collect();
     if pieces.is_empty() {
-        record.error("surface", "no body of permeable soil has a surface that nothing holds", report);
+        let message = "no body of permeable soil has a surface that nothing holds";
+        record.consequence("surface", message, PERMEABLE, report);
         return None;
     }
     let long: f64 = pieces.iter().map(|[p, q]| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
@@ -448,7 +452,7 @@ pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) 
     if found.is_none() {
         let names = || drains.iter().filter_map(|drain| drain.text("name"));
         let near = record.text("drain").map(|name| hint(name, names())).unwrap_or_default();
-        record.error(key, format!("there is no such [[drain]]{near}"), report);
+        record.consequence(key, format!("there is no such [[drain]]{near}"), &["drain"], report);
         return None;
     }
     Some(found)

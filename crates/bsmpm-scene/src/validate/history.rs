@@ -66,7 +66,8 @@ fn read(
         record.error("quantity", format!("there is no {measured} in a quasi-static analysis"), report);
     }
     if measured.is_of_footing() && !root.gives("footing") {
-        record.error("quantity", format!("\"{measured}\" is about the footing, and there is no [footing]"), report);
+        let message = format!("\"{measured}\" is about the footing, and there is no [footing]");
+        record.consequence("quantity", message, &["footing"], report);
     }
     if measured.is_of_flow() && !flow::flows(root) {
         let message =
@@ -90,7 +91,7 @@ fn read(
         let message = format!(
             "nothing is ever held at {side}: neither [boundary], a stage nor a [[prescribed]] face does; it reads 0"
         );
-        record.error("face", message, report);
+        record.consequence("face", message, &["boundary", "prescribed", "stage"], report);
     }
     let is_outlet = |side: Side| supports(root, side).contains(&Support::Outflow);
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
@@ -116,13 +117,13 @@ fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut
     let Some(number) = strips.iter().position(|(_, name, _)| *name == wanted) else {
         let near = hint(wanted, strips.iter().map(|(_, name, _)| *name));
         let message = format!("no [[prescribed]] motion and no [footing] has the name `{}`{near}", shortened(wanted));
-        record.error("of", message, report);
+        record.consequence("of", message, &["footing", "prescribed"], report);
         return None;
     };
     let (strip, _, key) = strips[number];
     if measured.is_of_contact() && strip.record(key).is_none() {
         let message = format!("\"{measured}\" is about what rubs or lets go, and {} holds", strip.path);
-        record.error("of", message, report);
+        record.consequence("of", message, &[&strip.path], report);
         return None;
     }
     Some(number)
@@ -261,7 +262,8 @@ fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usiz
     let names = || root.records("rigid").iter().filter_map(|rigid| rigid.text("name"));
     let found = names().position(|known| known == name);
     if found.is_none() {
-        record.error("rigid", format!("there is no rigid body `{name}`{}", hint(name, names())), report);
+        let message = format!("there is no rigid body `{name}`{}", hint(name, names()));
+        record.consequence("rigid", message, &["rigid"], report);
     }
     found
 }
@@ -302,7 +304,8 @@ fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usi
     let found = bodies.iter().position(|body| body.name.as_deref() == Some(name));
     if found.is_none() {
         let near = hint(name, bodies.iter().filter_map(|body| body.name.as_deref()));
-        record.error("body", format!("there is no body with name = \"{name}\"{near}"), report);
+        let message = format!("there is no body with name = \"{name}\"{near}");
+        record.consequence("body", message, &["body"], report);
     }
     found
 }
@@ -427,7 +430,7 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
         let hint = hint(quantity, names.iter().map(String::as_str));
         let known = if names.is_empty() { "there is no [[history]]".to_owned() } else { names.join(", ") };
         let message = format!("no history has a column `{}`{hint} (columns: {known})", shortened(quantity));
-        record.error("quantity", message, report);
+        record.consequence("quantity", message, &["history"], report);
         return None;
     };
     let at = if record.gives("at") { record.number("at")? } else { end? };

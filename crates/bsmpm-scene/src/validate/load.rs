@@ -43,7 +43,7 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         let mut places = places(Site::Plate(plate), grid).into_iter();
         if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
             let message = format!("no body is at {at:?} at the start; allowed: half a spacing of points from one");
-            record.error(key, message, report);
+            record.consequence(key, message, &["body"], report);
             return None;
         }
         return Some(LoadedLine::Plate(plate));
@@ -114,7 +114,7 @@ pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut R
                 "no body is at {:?} at the start; allowed: half a spacing of points from one",
                 &at[..grid.dims()]
             );
-            record.error("at", message, report);
+            record.consequence("at", message, &["body"], report);
         }
         let (force, (ramp, amplitude)) = force?;
         let key = if record.gives("force_path") { "force_path" } else { "force" };
@@ -156,7 +156,7 @@ fn acts_on_body(
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
     if let Some(at) = places.find(|at| !at_body(bodies, grid, *at)) {
         let message = format!("no body is at {at:?} at the start; allowed: half a spacing of points from one");
-        record.error(key, message, report);
+        record.consequence(key, message, &["body"], report);
     }
 }
 

@@ -57,7 +57,7 @@ impl Reduction {
 pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report<'_>) -> Option<Vec<NamedMaterial>> {
     let named = root.named("material");
     if root.gives("material") && named.is_empty() {
-        root.error("material", "at least one [material.NAME] is needed", report);
+        root.consequence("material", "at least one [material.NAME] is needed", &["material"], report);
     }
     if named.len() > MOST {
         root.error("material", format!("{} materials; at most {MOST} are possible", named.len()), report);

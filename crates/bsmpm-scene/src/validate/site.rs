@@ -45,7 +45,7 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
         let message =
             format!("no body is at {from:?} to {to:?} at the start; allowed: half a spacing of points from one");
-        record.error(key, message, report);
+        record.consequence(key, message, &["body"], report);
     }
 }
 

@@ -10,6 +10,8 @@ use crate::words::{Geometry, Side, Word};
 
 /// Parts of a step by which stages must lie apart: a step ends at each.
 const APART: f64 = 1e-6;
+/// Keys of what a stage may apply or release.
+const MAY_ACT: &[&str] = &["drain", "footing", "inflow", "point_load", "prescribed", "rigid", "traction"];
 
 /// All stages in the order of the file, which must be that of time; `time` is the end of the run and the nominal step.
 pub(super) fn read_all(
@@ -135,7 +137,7 @@ fn named<T: Copy>(
         if found.is_none() {
             let hint = hint(name, known.iter().map(|(name, _)| *name));
             let message = format!("there is no {kinds} with name = \"{}\"{hint}", shortened(name));
-            record.error(key, message, report);
+            record.consequence(key, message, if bodies { &["body"] } else { MAY_ACT }, report);
         }
         found
     };
@@ -181,7 +183,8 @@ fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<
             let found = materials.iter().position(|(other, _)| other == name);
             if found.is_none() {
                 let hint = hint(name, materials.iter().map(|(name, _)| name.as_str()));
-                pair.error(key, format!("there is no [material.{}]{hint}", shortened(name)), report);
+                let message = format!("there is no [material.{}]{hint}", shortened(name));
+                pair.consequence(key, message, &["material"], report);
             }
             found
         };
