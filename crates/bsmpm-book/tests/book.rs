@@ -59,6 +59,13 @@ fn the_reference_is_current() {
 }
 
 #[test]
+fn the_catalogue_of_messages_is_current() {
+    let committed = fs::read_to_string(source().join("messages.md")).unwrap();
+    let renew = "renew it: target/release/bsmpm explain --all > crates/bsmpm-book/src/messages.md";
+    assert!(committed == bsmpm_messages::catalogue(), "messages have changed since messages.md was made; {renew}");
+}
+
+#[test]
 fn every_link_leads_somewhere() {
     let mut wrong = Vec::new();
     for chapter in chapters().unwrap() {

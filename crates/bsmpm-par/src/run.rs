@@ -22,6 +22,7 @@ use bsmpm::parallel::Halo;
 use bsmpm::step::StepReport;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Communication, SolverNames, Status};
+use bsmpm_messages::headed;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
 use bsmpm_scene::Case;
@@ -177,7 +178,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
 
     /// A warning, told and kept.
     fn warn(&mut self, warning: String) {
-        self.log.line("warning", &format!("warning: {warning}"));
+        self.log.line("warning", &headed(&warning, "warning"));
         if let Some(ledger) = &mut self.ledger
             && !ledger.manifest().warnings.contains(&warning)
         {

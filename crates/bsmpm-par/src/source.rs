@@ -5,6 +5,7 @@ use crate::launch::say;
 use crate::memory;
 use crate::setup;
 use bsmpm_io::exit::{CASE, MISSING};
+use bsmpm_messages::headed;
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -81,6 +82,6 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         told.chain(chosen.iter().map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason))),
     );
     lines.extend(case.renamings.iter().map(|renaming| format!("note: {renaming}")));
-    lines.extend(setup::warnings(case, ranks).iter().map(|warning| format!("warning: {warning}")));
+    lines.extend(setup::warnings(case, ranks).iter().map(|warning| headed(warning, "warning")));
     lines.join("\n")
 }

@@ -44,8 +44,8 @@ pub enum Place {
 
 /// One error of a case file.
 ///
-/// `{}` writes one line, `FILE:LINE:COLUMN: KEY: MESSAGE`; `{:#}` adds the line of the file with a mark under the
-/// place.
+/// `{}` writes one line, `FILE:LINE:COLUMN: error CODE: KEY: MESSAGE`; `{:#}` adds the line of the file with a mark
+/// under the place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
     /// The case file as it was named.
@@ -54,7 +54,9 @@ pub struct Error {
     pub place: Place,
     /// Path of the key, as `--set` takes it (`body.0.box.upper`); empty where no key is concerned.
     pub key: String,
-    /// What was found and what is allowed.
+    /// The code of the cause, which `bsmpm explain` explains, such as `E0001`.
+    pub code: Option<String>,
+    /// What was found and what is allowed, without the code.
     pub message: String,
     /// The word that was found, if earlier versions had it and this one does not.
     pub removed: Option<&'static RemovedWord>,
@@ -68,6 +70,10 @@ impl fmt::Display for Error {
             Place::Line { line, column } => write!(f, "{}:{line}:{column}: ", self.file)?,
             Place::Override(text) => write!(f, "--set {text}: ")?,
             Place::File => write!(f, "{}: ", self.file)?,
+        }
+        match &self.code {
+            Some(code) => write!(f, "error {code}: ")?,
+            None => f.write_str("error: ")?,
         }
         if !self.key.is_empty() {
             write!(f, "{}: ", self.key)?;

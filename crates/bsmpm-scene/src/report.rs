@@ -4,6 +4,7 @@ use crate::error::{Choice, Error, Origin, Place};
 use crate::record::join;
 use crate::source::Source;
 use crate::words::RemovedWord;
+use bsmpm_messages::{code_of, without_code};
 use std::collections::{HashMap, HashSet};
 
 /// Errors that are reported at most; a file with more is no case.
@@ -41,6 +42,24 @@ struct Renaming {
     paths: Vec<String>,
 }
 
+/// Warnings that differ only in the key that they concern.
+struct Merged {
+    /// The code and `": "`, or nothing.
+    head: String,
+    keys: Vec<String>,
+    text: String,
+}
+
+impl Merged {
+    fn line(&self) -> String {
+        let Self { head, keys, text } = self;
+        match keys.is_empty() {
+            true => format!("{head}{text}"),
+            false => format!("{head}{}: {text}", listed(keys)),
+        }
+    }
+}
+
 impl<'a> Report<'a> {
     pub(crate) fn new(source: &'a Source<'a>, overrides: &'a [String]) -> Self {
         Self {
@@ -54,7 +73,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Records an error at `origin` that concerns the key path `key`.
+    /// Records an error at `origin` that concerns the key path `key`. `message` begins with its code.
     pub(crate) fn error(&mut self, origin: Origin, key: &str, message: impl Into<String>) {
         self.about(origin, key, message, Vec::new());
     }
@@ -112,33 +131,34 @@ impl<'a> Report<'a> {
             Origin::Nowhere => (Place::File, None),
         };
         let (file, key) = (self.source.name.to_owned(), shortened(key));
-        Error { file, place, key, message, removed, excerpt }
+        let code = code_of(&message).map(str::to_owned);
+        let message = without_code(&message).to_owned();
+        Error { file, place, key, code, message, removed, excerpt }
     }
 
+    /// Records a warning: its code, the key that it concerns if there is one, and the text (`W0001: KEY: TEXT`).
     pub(crate) fn warn(&mut self, message: impl Into<String>) {
         self.warnings.push(message.into());
     }
 
     /// Hands over the warnings. Warnings that differ only in the key that they begin with are one, with all these keys.
     pub(crate) fn take_warnings(&mut self) -> Vec<String> {
-        let mut merged: Vec<(Vec<String>, String)> = Vec::new();
+        let mut merged: Vec<Merged> = Vec::new();
         let mut numbers: HashMap<String, usize> = HashMap::new();
         for warning in std::mem::take(&mut self.warnings) {
-            let Some((key, text)) = warning.split_once(": ").filter(|(key, _)| !key.contains(' ')) else {
-                merged.push((Vec::new(), warning));
+            let head = code_of(&warning).map_or_else(String::new, |code| format!("{code}: "));
+            let words = without_code(&warning);
+            let Some((key, text)) = words.split_once(": ").filter(|(key, _)| !key.contains(' ')) else {
+                merged.push(Merged { head, keys: Vec::new(), text: words.to_owned() });
                 continue;
             };
-            let number = *numbers.entry(text.to_owned()).or_insert(merged.len());
+            let number = *numbers.entry(format!("{head}{text}")).or_insert(merged.len());
             if number == merged.len() {
-                merged.push((Vec::new(), text.to_owned()));
+                merged.push(Merged { head, keys: Vec::new(), text: text.to_owned() });
             }
-            merged[number].0.push(key.to_owned());
+            merged[number].keys.push(key.to_owned());
         }
-        let line = |(keys, text): (Vec<String>, String)| match keys.is_empty() {
-            true => text,
-            false => format!("{}: {text}", listed(&keys)),
-        };
-        merged.into_iter().map(line).collect()
+        merged.iter().map(Merged::line).collect()
     }
 
     pub(crate) fn note(&mut self, key: impl Into<String>, value: impl Into<String>, reason: impl Into<String>) {
@@ -213,6 +233,7 @@ impl<'a> Report<'a> {
                 file: self.source.name.to_owned(),
                 place: Place::File,
                 key: String::new(),
+                code: None,
                 message: format!("{more} more errors are not shown"),
                 removed: None,
                 excerpt: None,

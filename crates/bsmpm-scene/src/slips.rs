@@ -133,7 +133,7 @@ fn list_single_table(node: &mut Node, table: &Table, path: &str, report: &mut Re
     let Value::Table(written) = &mut node.value else { return };
     let name = path.rsplit('.').next().unwrap_or(path);
     let message = format!(
-        "expected a list of tables, {}, found a table. Write two pairs of brackets, [[{}]], also for a single one.",
+        "E0047: expected a list of tables, {}, found a table. Write two pairs of brackets, [[{}]], also for a single one.",
         table.header,
         if table.header.starts_with("[[") { table.header.trim_matches(['[', ']']) } else { name }
     );
@@ -146,7 +146,7 @@ fn list_single_table(node: &mut Node, table: &Table, path: &str, report: &mut Re
 fn take_only_table(node: &mut Node, table: &Table, path: &str, report: &mut Report<'_>) {
     let Value::List(items) = &mut node.value else { return };
     let [Node { value: Value::Table(written), .. }] = &mut items[..] else { return };
-    let message = format!("expected one table, {}, found a list of tables. Write one pair of brackets.", table.header);
+    let message = format!("E0048: expected one table, {}, found a list of tables. Write one pair of brackets.", table.header);
     report.error(node.origin, path, message);
     node.value = Value::Table(std::mem::take(written));
 }

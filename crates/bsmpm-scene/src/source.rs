@@ -4,6 +4,7 @@ mod rows;
 mod stl;
 
 use crate::error::{Error, Place};
+use bsmpm_messages::{code_of, without_code};
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -45,7 +46,8 @@ pub(crate) fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Vec<Err
             file: name.to_owned(),
             place: Place::File,
             key: String::new(),
-            message,
+            code: code_of(&message).map(str::to_owned),
+            message: without_code(&message).to_owned(),
             removed: None,
             excerpt: None,
         }]

@@ -3,9 +3,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use bsmpm_messages::headed;
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, element, estimate, fos, limit_load, plot, slurm, sweep, validate, verify_case};
+use crate::{Error, compare, element, estimate, explain, fos, limit_load, plot, slurm, sweep, validate, verify_case};
 
 /// Starts runs of bsmpm-par, and looks at what they left.
 #[derive(Debug, Parser)]
@@ -39,6 +40,8 @@ pub enum Command {
     Element(element::ElementArguments),
     /// Write a job script for Slurm that queues itself again until the case is done
     Slurm(slurm::SlurmArguments),
+    /// Explain messages by their codes: what each means, why it matters, what to do
+    Explain(explain::ExplainArguments),
     /// Print every key of a case file with its unit, range and default, and every quantity of a history
     Keys,
 }
@@ -92,9 +95,10 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             let (table, files) = element::run(arguments, say)?;
             print(&table, &files);
         }
+        Command::Explain(arguments) => print(&explain::run(arguments)?, &[]),
         Command::Keys => print(&bsmpm_scene::reference(), &[]),
         Command::Slurm(arguments) => {
-            let script = slurm::run(arguments, |line| say(&format!("warning: {line}")))?;
+            let script = slurm::run(arguments, |line| say(&headed(line, "warning")))?;
             // Half a script must not pass for one.
             let failed = bsmpm_io::Error::file("write", Path::new("the standard output"));
             let mut stdout = std::io::stdout();

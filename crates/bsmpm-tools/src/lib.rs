@@ -11,6 +11,7 @@ pub mod compare;
 pub mod element;
 pub mod error;
 pub mod estimate;
+pub mod explain;
 pub mod fos;
 mod grid_convergence;
 mod launch;

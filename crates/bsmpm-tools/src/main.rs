@@ -4,6 +4,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
+use bsmpm_messages::headed;
 use bsmpm_tools::Error;
 use bsmpm_tools::cli::{Cli, run};
 use clap::Parser;
@@ -14,7 +15,7 @@ fn main() -> ExitCode {
         Err(error) => {
             // The last line of a validation is its counts, for those who read them there.
             if !matches!(error, Error::NotValid { .. }) {
-                let _ = writeln!(std::io::stderr(), "bsmpm: {error}");
+                let _ = writeln!(std::io::stderr(), "bsmpm: {}", headed(&error.to_string(), "error"));
             }
             ExitCode::from(error.exit_code())
         }

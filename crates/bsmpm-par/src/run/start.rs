@@ -8,6 +8,7 @@ use bsmpm::initial::Settling;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::step::StepReport;
 use bsmpm_io::manifest::{ManifestInitial, ManifestSettling};
+use bsmpm_messages::headed;
 use bsmpm_scene::Initial;
 
 /// Part of the largest force beyond which an out-of-balance stress at the start is warned of. Level ground by k0 leaves
@@ -22,7 +23,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         if let Some(ledger) = &mut self.ledger {
             for warning in ledger.news() {
-                self.log.line("warning", &format!("warning: {warning}"));
+                self.log.line("warning", &headed(&warning, "warning"));
             }
         }
         if machine::has_reference_blas() {

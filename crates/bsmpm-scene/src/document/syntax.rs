@@ -39,7 +39,7 @@ pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report
         let closing = if opening == '[' { ']' } else { '}' };
         let line = source.line(behind);
         let message = format!(
-            "the bracket `{opening}` is not closed before line {line}. Add `{closing}` at the end of the value."
+            "E0041: the bracket `{opening}` is not closed before line {line}. Add `{closing}` at the end of the value."
         );
         report.error(Origin::Text(at), "", message);
     }
@@ -58,10 +58,10 @@ fn explained(source: &Source<'_>, span: &std::ops::Range<usize>, message: &str) 
     }
     let value = line.split_once('=').map_or("", |(_, value)| value.split('#').next().unwrap_or(value).trim());
     if let Some(number) = with_decimal_comma(value) {
-        return format!("`{}` has a decimal comma. Write a decimal point: {number}.", shortened(value));
+        return format!("E0042: `{}` has a decimal comma. Write a decimal point: {number}.", shortened(value));
     }
     if is_number_with_unit(value) {
-        return format!("`{}` has a unit, but no quotes. Write \"{}\".", shortened(value), shortened(value));
+        return format!("E0043: `{}` has a unit, but no quotes. Write \"{}\".", shortened(value), shortened(value));
     }
     format!("no valid TOML: {message}")
 }
@@ -88,22 +88,22 @@ fn duplicate(source: &Source<'_>, span: &std::ops::Range<usize>, line: &str) -> 
     let Some(header) = header(line) else {
         let first = first_entry(before, name).map(|at| source.line(at));
         return match first {
-            Some(first) => format!("`{name}` is given twice, here and in line {first}. Delete one of them."),
-            None => format!("`{name}` is given twice. Delete one of them."),
+            Some(first) => format!("E0044: `{name}` is given twice, here and in line {first}. Delete one of them."),
+            None => format!("E0044: `{name}` is given twice. Delete one of them."),
         };
     };
+    let name = header.name;
     let lines = before.lines().enumerate();
     let same = lines.filter_map(|(number, line)| Some((number + 1, self::header(line)?)));
-    let first = same.filter(|(_, other)| other.name == header.name).last();
+    let first = same.filter(|(_, other)| other.name == name).last();
     match first {
         Some((number, first)) if first.is_list == header.is_list => {
-            format!("the table [{name}] is given twice, here and in line {number}. Put all of its keys into one of them.", name = header.name)
+            format!("E0045: the table [{name}] is given twice, here and in line {number}. Put all of its keys into one of them.")
         }
         Some((number, _)) => format!(
-            "`{name}` has two pairs of brackets in one place and one pair in the other (line {number}). Write [[{name}]] in both.",
-            name = header.name
+            "E0046: `{name}` has two pairs of brackets in one place and one pair in the other (line {number}). Write [[{name}]] in both."
         ),
-        None => format!("the table [{}] is given twice. Put all of its keys into one of them.", header.name),
+        None => format!("E0045: the table [{name}] is given twice. Put all of its keys into one of them."),
     }
 }
 
@@ -245,7 +245,7 @@ mod tests {
     fn a_bracket_that_is_not_closed_is_reported_where_it_opens() {
         let expected = |line: usize| {
             format!(
-                "case.toml:1:5: the bracket `[` is not closed before line {line}. Add `]` at the end of the value."
+                "case.toml:1:5: error E0041: the bracket `[` is not closed before line {line}. Add `]` at the end of the value."
             )
         };
         assert_eq!(only("a = [[0.0, 1.0], [2.0, 3.0]\n\n[x]\na=1\n"), expected(3));
@@ -256,8 +256,8 @@ mod tests {
 
     #[test]
     fn a_key_that_is_given_twice_has_two_places() {
-        assert_eq!(only("a = 1\nb = 2\na = 3\n"), "case.toml:3:1: `a` is given twice, here and in line 1. Delete one of them.");
-        assert_eq!(only("x = { a = 1, a = 2 }"), "case.toml:1:14: `a` is given twice, here and in line 1. Delete one of them.");
+        assert_eq!(only("a = 1\nb = 2\na = 3\n"), "case.toml:3:1: error E0044: `a` is given twice, here and in line 1. Delete one of them.");
+        assert_eq!(only("x = { a = 1, a = 2 }"), "case.toml:1:14: error E0044: `a` is given twice, here and in line 1. Delete one of them.");
         let table = only("[m.s]\na = 1\n[m.s]\nb = 2\n");
         assert!(table.contains("the table [m.s] is given twice, here and in line 1."), "{table}");
         let list = only("[body]\na=1\n[[body]]\na=2\n[[body]]\na=3\n");

@@ -75,7 +75,7 @@ fn an_error_reads_well() {
     let line = 1 + text[..text.find("0.6").unwrap()].matches('\n').count();
     let message = "0.6 is out of range; allowed: -1 < poisson < 0.5 (at 0.5 the material is incompressible and its elastic \
                    stiffness singular)";
-    assert_eq!(error.to_string(), format!("case.toml:{line}:15: material.clay.poisson: {message}"));
+    assert_eq!(error.to_string(), format!("case.toml:{line}:15: error: material.clay.poisson: {message}"));
     let block = format!("{error:#}");
     let lines: Vec<&str> = block.lines().skip(1).collect();
     assert_eq!(lines, [format!("  {line} | poisson     = 0.6"), "     |               ^".to_owned()]);

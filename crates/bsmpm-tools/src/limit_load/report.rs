@@ -1,6 +1,7 @@
 //! The loads on all grids, what they say of an infinitely fine one, and what it took.
 
 use bsmpm_io::manifest::ManifestLimitLoad;
+use bsmpm_messages::headed;
 use serde::Serialize;
 
 use crate::Error;
@@ -132,7 +133,7 @@ impl LimitLoadReport {
             .right("CPU s", |row| format!("{:.1}", row.cost.cpu_seconds));
         let found: String = self.loads.iter().map(ExtrapolatedLoad::text).collect();
         let unfinished: String = self.grids.iter().filter(|grid| !grid.is_reached).map(GridLoad::doubt).collect();
-        let warnings: String = self.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect();
+        let warnings: String = self.warnings.iter().map(|warning| headed(warning, "warning") + "\n").collect();
         format!(
             "{warnings}{}\n{} points along each axis of a cell; stabilisation {}; {} steps; Young's moduli x {} on the first grid\n\n\
              {}\n{found}{unfinished}",

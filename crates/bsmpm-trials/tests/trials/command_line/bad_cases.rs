@@ -36,7 +36,9 @@ fn all_errors_of_a_case_and_its_overrides_are_told_in_one_go() {
     let text = changed(&changed(COLUMN, "poisson = 0.3", "poisson = 0.6"), "steps = 5", "steps = 1.5");
     let scratch = Scratch::with_case(&changed(&text, "type  = ", "typ = "));
     let output = scratch.mpirun(2, &["case.toml", "--set", "grid.cell=-1"]).expect(65);
-    for key in [" analysis.typ: ", " analysis.steps: ", " material.soil.poisson: ", "--set grid.cell=-1: grid.cell: "] {
+    for key in
+        [" analysis.typ: ", " analysis.steps: ", " material.soil.poisson: ", "--set grid.cell=-1: error: grid.cell: "]
+    {
         output.says_once(key);
     }
     assert_eq!(scratch.entries(), ["case.toml"]);

@@ -1,0 +1,8 @@
+//! The codes of messages, and the page of the catalogue that explains each.
+#![doc = include_str!("../README.md")]
+
+mod code;
+mod page;
+
+pub use code::{Kind, code_of, headed, without_code};
+pub use page::{Page, catalogue, page, pages, texts};
