@@ -17,6 +17,17 @@ pub(crate) struct Node {
     pub(crate) value: Value,
 }
 
+impl Node {
+    /// Whether it is a text or a list with one.
+    pub(crate) fn is_worded(&self) -> bool {
+        match &self.value {
+            Value::Text(_) => true,
+            Value::List(items) => items.iter().any(Self::is_worded),
+            _ => false,
+        }
+    }
+}
+
 /// A value of TOML. Numbers are kept as text, without underscores.
 #[derive(Clone, Debug)]
 pub(crate) enum Value {

@@ -30,7 +30,16 @@ struct RecordField {
     key: &'static str,
     origin: Origin,
     written: bool,
+    /// a text, or a list with one, as a number with its unit is
+    is_worded: bool,
     datum: Option<Datum>, // None: an error has been reported
+}
+
+impl RecordField {
+    /// A key that the file does not give.
+    fn absent(key: &'static str, origin: Origin, datum: Option<Datum>) -> Self {
+        Self { key, origin, written: false, is_worded: false, datum }
+    }
 }
 
 /// A value of a known type; quantities are in SI, angles in degrees.
@@ -114,16 +123,22 @@ impl Context {
                 }
                 (Some(entry), _) => {
                     let datum = self.datum(&key.kind, &entry.node, &path, report);
-                    record.fields.push(RecordField { key: key.name, origin: entry.node.origin, written: true, datum });
+                    record.fields.push(RecordField {
+                        key: key.name,
+                        origin: entry.node.origin,
+                        written: true,
+                        is_worded: entry.node.is_worded(),
+                        datum,
+                    });
                 }
                 (None, Presence::Required) => {
                     let message = format!("missing; it is {}", key.kind);
                     report.missing(origin, &record.path, &[key.name], message, FILLED_BY);
-                    record.fields.push(RecordField { key: key.name, origin, written: false, datum: None });
+                    record.fields.push(RecordField::absent(key.name, origin, None));
                 }
                 (None, Presence::Default(text)) => {
                     let datum = self.default(&key.kind, text, (origin, &path), report);
-                    record.fields.push(RecordField { key: key.name, origin, written: false, datum });
+                    record.fields.push(RecordField::absent(key.name, origin, datum));
                 }
                 (None, Presence::Optional | Presence::Later | Presence::Retired) => {}
             }
@@ -271,6 +286,11 @@ impl Record {
     pub(crate) fn gives(&self, key: &str) -> bool {
         self.known(key);
         self.field(key).is_some_and(|field| field.written)
+    }
+
+    /// Whether the file gives the key with a unit, so that its author has said which one is meant.
+    pub(crate) fn has_unit(&self, key: &str) -> bool {
+        self.field(key).is_some_and(|field| field.is_worded)
     }
 
     /// Place of the key's value, or of the table where there is none.

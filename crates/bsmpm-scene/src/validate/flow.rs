@@ -29,6 +29,8 @@ const AT: f64 = 1e-9;
 const PERMEABLE: &[&str] = &["body", "material"];
 /// Permeability, m/s, beyond which a number is taken for a slip: that of gravel without sand.
 const MOST_PERMEABLE: f64 = 1.0;
+/// The same, m/s, of the tightest clay.
+const LEAST_PERMEABLE: f64 = 1e-14;
 
 /// Drainage that the case gives a material.
 fn drainage(root: &Record, material: &Record) -> Option<Drainage> {
@@ -205,7 +207,16 @@ fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability
     let along = [0, 1, 2].map(|axis| given[axis.min(given.len() - 1)]);
     if let Some(much) = along.into_iter().find(|k| *k > MOST_PERMEABLE) {
         let path = record.path_of("permeability");
-        report.warn(format!("{path}: {much} m/s is more than that of gravel: check the unit"));
+        report.warn(format!(
+            "W0109: {path}: {much} m/s is more than that of gravel (1 m/s). Check the unit, and write it: \"1e-5 m/s\"."
+        ));
+    }
+    if let Some(little) = along.into_iter().find(|k| *k > 0.0 && *k < LEAST_PERMEABLE) {
+        report.warn(format!(
+            "W0109: {}: {little:e} m/s is less than that of bentonite (1e-14 m/s). If it is an intrinsic permeability in m2, \
+             multiply it by 1e7 1/(m s).",
+            record.path_of("permeability")
+        ));
     }
     let law = record.word_if_given("permeability_law")?.unwrap_or(PermeabilityLaw::Constant);
     Some(Permeability { along: along.into(), law })

@@ -212,7 +212,8 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
     };
     if !(100.0..=30_000.0).contains(&density) {
         report.warn(format!(
-            "{}: a density of {density:.6} kg/m3 (unit weight {:.6} kN/m3) is unusual: check the unit",
+            "W0108: {}: {density:.3} kg/m3, a unit weight of {:.3} kN/m3, is not that of soil or rock (5 to 30 kN/m3). Check \
+             the unit, and write it: unit_weight = \"20 kN/m3\".",
             record.path,
             density * STANDARD_GRAVITY * 1e-3
         ));
@@ -259,7 +260,9 @@ const STIFF: f64 = 0.4999;
 const STIFF_TO_FLOW: f64 = 0.499;
 
 fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {
-    if let Some(young) = young.filter(|young| !(1e3..=1e12).contains(young)) {
+    // Without a unit it is looked at with the stresses of the case.
+    let least = if record.has_unit("young") { 1e3 } else { 0.0 };
+    if let Some(young) = young.filter(|young| !(least..=1e12).contains(young)) {
         report.warn(format!(
             "{}: young = {young:e} Pa = {:e} kPa is unusual: check the unit",
             record.path,
