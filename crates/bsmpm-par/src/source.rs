@@ -18,7 +18,7 @@ pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u
     let name = arguments.case.display().to_string();
     let bytes = broadcast(world, || {
         bsmpm_scene::load(&arguments.case).map_err(|error| {
-            say(&format!("bsmpm-par: {name}: {error}"));
+            say(&format!("bsmpm-par: {name}: {}", headed(&error.to_string(), "error")));
             if error.kind() == ErrorKind::InvalidData { CASE } else { MISSING }
         })
     })?;

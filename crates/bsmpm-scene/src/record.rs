@@ -12,8 +12,14 @@ use crate::unit::Dimension;
 use crate::words::{AnalysisType, Geometry, Word};
 pub(crate) use value::UNREAD;
 
-/// Keys whose words stand for others, which are missing where these are wrong.
+/// Keys that the words of others stand for, and these others.
+const FILLED: &[&str] = &["cell", "knots", "degree", "points_per_cell", "steps", "dt", "method"];
 const FILLED_BY: &[&str] = &["accuracy", "analysis.purpose"];
+
+/// The keys whose words would give one of these a value.
+fn filled_by(keys: &[&str]) -> &'static [&'static str] {
+    if keys.iter().any(|key| FILLED.contains(key)) { FILLED_BY } else { &[] }
+}
 
 /// A table whose keys and values are as the schema says.
 #[derive(Clone, Debug)]
@@ -133,7 +139,7 @@ impl Context {
                 }
                 (None, Presence::Required) => {
                     let message = format!("missing; it is {}", key.kind);
-                    report.missing(origin, &record.path, &[key.name], message, FILLED_BY);
+                    report.missing(origin, &record.path, &[key.name], message, filled_by(&[key.name]));
                     record.fields.push(RecordField::absent(key.name, origin, None));
                 }
                 (None, Presence::Default(text)) => {
@@ -248,7 +254,7 @@ fn exclusive<'a>(
     if given.is_empty() && group.required && !is_told {
         missing.extend(group.keys);
         let message = format!("missing: one of {}", group.keys.join(", "));
-        report.missing(record.origin, &record.path, group.keys, message, FILLED_BY);
+        report.missing(record.origin, &record.path, group.keys, message, filled_by(group.keys));
     }
 }
 
@@ -304,13 +310,7 @@ impl Record {
     }
 
     /// Records an error about the key that follows from another one if that is about one of the `causes`.
-    pub(crate) fn consequence(
-        &self,
-        key: &str,
-        message: impl Into<String>,
-        causes: &[&str],
-        report: &mut Report<'_>,
-    ) {
+    pub(crate) fn consequence(&self, key: &str, message: impl Into<String>, causes: &[&str], report: &mut Report<'_>) {
         report.consequence(self.place(key), &self.path_of(key), message, causes);
     }
 

@@ -79,13 +79,7 @@ impl<'a> Report<'a> {
     }
 
     /// Records an error at `origin` that concerns the key path `key` and others that it leaves without a value.
-    pub(crate) fn about(
-        &mut self,
-        origin: Origin,
-        key: &str,
-        message: impl Into<String>,
-        mut others: Vec<String>,
-    ) {
+    pub(crate) fn about(&mut self, origin: Origin, key: &str, message: impl Into<String>, mut others: Vec<String>) {
         others.push(key.to_owned());
         let error = self.placed(origin, key, message.into(), None);
         self.errors.push(ReportedError { origin, error, about: others, causes: Vec::new() });

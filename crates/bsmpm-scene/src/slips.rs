@@ -6,7 +6,7 @@ use crate::document::{DocumentTable, Node, Value};
 use crate::nearest::nearest;
 use crate::record::join;
 use crate::report::{Report, shortened};
-use crate::schema::{Kind, Presence, ROOT, Table, answer};
+use crate::schema::{Key, Kind, Presence, ROOT, Table, answer};
 
 /// Unknown keys of a table that are reported at most.
 const MOST_UNKNOWN: usize = 50;
@@ -46,8 +46,8 @@ fn rename_misspelt(written: &mut DocumentTable, table: &'static Table, path: &st
 /// stand for a value.
 fn meant(table: &'static Table, name: &str) -> Option<&'static str> {
     if answer(table, name).is_some() {
-        let is_value = |name: &&'static str| table.key(name).is_some_and(|key| key.kind.table().is_none());
-        return answered(table, name).into_iter().find(is_value);
+        let is_value = |key: &Key| !matches!(key.kind, Kind::Table(_) | Kind::Named(_) | Kind::Tables(_));
+        return answered(table, name).into_iter().find(|name| table.key(name).is_some_and(is_value));
     }
     nearest(name, names(table))
 }
@@ -83,14 +83,14 @@ fn unknown_key(table: &'static Table, key: &str) -> String {
     if let Some(answer) = answer(table, key) {
         return format!("unknown key `{}` in {}: {answer}", shortened(key), table.header);
     }
-    let elsewhere = || ROOT.all().into_iter().find(|other| other.key(key).is_some());
-    let hint = match (nearest(key, names(table)), elsewhere()) {
-        (Some(name), _) => format!("; did you mean `{name}`?"),
-        (None, Some(other)) => format!("; `{key}` belongs to {}", other.header),
-        (None, None) => String::new(),
-    };
+    let unknown = format!("unknown key `{}` in {}", shortened(key), table.header);
+    if let Some(name) = nearest(key, names(table)) {
+        return format!("{unknown}; did you mean `{name}`?");
+    }
+    let elsewhere = ROOT.all().into_iter().find(|other| other.key(key).is_some());
+    let hint = elsewhere.map_or(String::new(), |other| format!("; `{key}` belongs to {}", other.header));
     let known: Vec<&str> = names(table).collect();
-    format!("unknown key `{}` in {}{hint} (known: {})", shortened(key), table.header, known.join(", "))
+    format!("{unknown}{hint} (known: {})", known.join(", "))
 }
 
 fn in_value(node: &mut Node, kind: &'static Kind, path: &str, report: &mut Report<'_>) {
@@ -146,7 +146,8 @@ fn list_single_table(node: &mut Node, table: &Table, path: &str, report: &mut Re
 fn take_only_table(node: &mut Node, table: &Table, path: &str, report: &mut Report<'_>) {
     let Value::List(items) = &mut node.value else { return };
     let [Node { value: Value::Table(written), .. }] = &mut items[..] else { return };
-    let message = format!("E0048: expected one table, {}, found a list of tables. Write one pair of brackets.", table.header);
+    let message =
+        format!("E0048: expected one table, {}, found a list of tables. Write one pair of brackets.", table.header);
     report.error(node.origin, path, message);
     node.value = Value::Table(std::mem::take(written));
 }

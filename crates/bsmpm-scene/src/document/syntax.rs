@@ -17,6 +17,8 @@ pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report
     let unclosed = if errors.is_empty() { None } else { unclosed_bracket(source.text) };
     let mut last_line = None;
     let mut duplicates: Vec<&str> = Vec::new();
+    // Where a table that is given twice begins, whose keys are not given twice then.
+    let mut repeated: Option<usize> = None;
     for error in errors {
         let Some(span) = &error.span else {
             report.error(Origin::Nowhere, "", format!("no valid TOML: {}", error.message));
@@ -25,12 +27,15 @@ pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report
         let line = source.line(span.start);
         let is_behind = unclosed.as_ref().is_some_and(|bracket| bracket.at <= span.start);
         let name = &source.text[span.clone()];
-        let is_repeated = error.message == DUPLICATE && duplicates.contains(&name);
+        let is_in_repeated = repeated
+            .is_some_and(|from| source.text[from..span.start].lines().skip(1).all(|line| header(line).is_none()));
+        let is_repeated = error.message == DUPLICATE && (duplicates.contains(&name) || is_in_repeated);
         if is_behind || is_repeated || last_line == Some(line) {
             continue;
         }
         if error.message == DUPLICATE {
             duplicates.push(name);
+            repeated = header(line_of(source.text, span.start)).map(|_| span.start);
         }
         last_line = Some(line);
         report.error(Origin::Text(span.start), "", explained(source, span, error.message));
@@ -48,11 +53,15 @@ pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report
 /// What the reader of TOML says of a key or table that stands twice.
 const DUPLICATE: &str = "duplicate key";
 
+/// The line that a byte lies in.
+fn line_of(text: &str, at: usize) -> &str {
+    let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    text[start..].lines().next().unwrap_or_default()
+}
+
 /// The error in the author's words, where there are better ones than those of the reader of TOML.
 fn explained(source: &Source<'_>, span: &std::ops::Range<usize>, message: &str) -> String {
-    let text = source.text;
-    let start = text[..span.start].rfind('\n').map_or(0, |end| end + 1);
-    let line = text[start..].lines().next().unwrap_or_default();
+    let line = line_of(source.text, span.start);
     if message == DUPLICATE {
         return duplicate(source, span, line);
     }
@@ -98,7 +107,9 @@ fn duplicate(source: &Source<'_>, span: &std::ops::Range<usize>, line: &str) -> 
     let first = same.filter(|(_, other)| other.name == name).last();
     match first {
         Some((number, first)) if first.is_list == header.is_list => {
-            format!("E0045: the table [{name}] is given twice, here and in line {number}. Put all of its keys into one of them.")
+            format!(
+                "E0045: the table [{name}] is given twice, here and in line {number}. Put all of its keys into one of them."
+            )
         }
         Some((number, _)) => format!(
             "E0046: `{name}` has two pairs of brackets in one place and one pair in the other (line {number}). Write [[{name}]] in both."
@@ -226,7 +237,8 @@ fn end_of_string(text: &str, start: usize) -> Option<usize> {
 fn is_entry(line: &str) -> bool {
     let Some((key, _)) = line.split_once('=') else { return false };
     let key = key.trim();
-    key.starts_with(|c: char| c.is_ascii_alphabetic()) && key.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c))
+    key.starts_with(|c: char| c.is_ascii_alphabetic())
+        && key.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c))
 }
 
 #[cfg(test)]
@@ -256,8 +268,14 @@ mod tests {
 
     #[test]
     fn a_key_that_is_given_twice_has_two_places() {
-        assert_eq!(only("a = 1\nb = 2\na = 3\n"), "case.toml:3:1: error E0044: `a` is given twice, here and in line 1. Delete one of them.");
-        assert_eq!(only("x = { a = 1, a = 2 }"), "case.toml:1:14: error E0044: `a` is given twice, here and in line 1. Delete one of them.");
+        assert_eq!(
+            only("a = 1\nb = 2\na = 3\n"),
+            "case.toml:3:1: error E0044: `a` is given twice, here and in line 1. Delete one of them."
+        );
+        assert_eq!(
+            only("x = { a = 1, a = 2 }"),
+            "case.toml:1:14: error E0044: `a` is given twice, here and in line 1. Delete one of them."
+        );
         let table = only("[m.s]\na = 1\n[m.s]\nb = 2\n");
         assert!(table.contains("the table [m.s] is given twice, here and in line 1."), "{table}");
         let list = only("[body]\na=1\n[[body]]\na=2\n[[body]]\na=3\n");

@@ -2,6 +2,7 @@
 
 use super::{MAX_BYTES, stl};
 use crate::words::{Geometry, Word};
+use bsmpm_messages::{code_of, without_code};
 use std::io::{self, Error, ErrorKind, Read};
 use std::ops::Range;
 use std::path::Path;
@@ -30,7 +31,7 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     references.sort_by_key(|reference: &FileReference<'_>| reference.span.start);
     let (mut whole, mut from) = (String::with_capacity(text.len()), 0);
     for FileReference { span, file, along } in references {
-        let told = |error: Error| Error::new(error.kind(), format!("{file}: {error}"));
+        let told = |error: Error| Error::new(error.kind(), of_file(file, &error.to_string()));
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(told)?;
         let found = if stl::is_binary(&bytes) {
@@ -47,6 +48,14 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     Ok(whole)
 }
 
+/// A message with the file that it concerns behind its code.
+fn of_file(file: &str, message: &str) -> String {
+    match code_of(message) {
+        Some(code) => format!("{code}: {file}: {}", without_code(message)),
+        None => format!("{file}: {message}"),
+    }
+}
+
 /// The axis that a file names, if it does, and those that the geometry has.
 type AxisNames<'a> = (Option<&'a str>, &'a [&'a str]);
 
@@ -54,12 +63,19 @@ type AxisNames<'a> = (Option<&'a str>, &'a [&'a str]);
 fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
     let text = String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "no UTF-8 text"))?;
     let begins = |word: &str| text.trim_start().get(..word.len()).is_some_and(|of| of.eq_ignore_ascii_case(word));
+    if begins("PEER") || text.lines().take(4).any(|line| line.trim_start().to_ascii_uppercase().starts_with("NPTS")) {
+        return Err(Error::new(ErrorKind::InvalidData, PEER));
+    }
     match (begins("ncols"), begins("solid")) {
         (true, _) => grid(&text),
         (_, true) => stl::facets(&text),
         _ => rows(&text, along),
     }
 }
+
+/// Of a record as the databases of ground motions write it.
+const PEER: &str = "E0049: this is a record in PEER's format (.AT2), which is not read. Write a text file with the columns \
+                    `t [s], a [g]`, one row per sample: t is the number of the row times DT.";
 
 /// The bytes of a file that is not longer than a case may be.
 fn read(path: &Path) -> io::Result<Vec<u8>> {

@@ -192,7 +192,10 @@ pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
     let mut pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
     let both = |(i, j): &(usize, usize)| overlap(&bodies[*i], &bodies[*j], grid, &mut work) && together(*i, *j);
     if let Some((i, j)) = pairs.find(both) {
-        report.warn(format!("body.{i} and body.{j} overlap: the common part holds the points of both"));
+        report.warn(format!(
+            "W0201: body.{i} and body.{j} overlap. The common part has the material points, and the weight, of both. Cut one of \
+             them out of the other with `subtract`."
+        ));
     }
 }
 

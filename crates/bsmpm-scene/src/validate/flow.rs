@@ -290,7 +290,9 @@ impl Ground<'_> {
                      stage that places the body apply it"
                 ),
                 None => {
-                    format!("no body is at {at:?} at the start; allowed: half a spacing of points from one")
+                    format!(
+                        "E0401: no body is at {at:?} at the start. Move it onto a body: half the spacing of material points away at most."
+                    )
                 }
             };
             record.consequence(key, message, PERMEABLE, report);

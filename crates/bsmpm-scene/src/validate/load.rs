@@ -42,7 +42,9 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         let plate = plate(record, grid, report)?;
         let mut places = places(Site::Plate(plate), grid).into_iter();
         if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
-            let message = format!("no body is at {at:?} at the start; allowed: half a spacing of points from one");
+            let message = format!(
+                "E0401: no body is at {at:?} at the start. Move it onto a body: half the spacing of material points away at most."
+            );
             record.consequence(key, message, &["body"], report);
             return None;
         }
@@ -111,7 +113,7 @@ pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut R
             record.error("at", message, report);
         } else if !is_at(bodies, grid, at) {
             let message = format!(
-                "no body is at {:?} at the start; allowed: half a spacing of points from one",
+                "E0401: no body is at {:?} at the start. Move it onto a body: half the spacing of material points away at most.",
                 &at[..grid.dims()]
             );
             record.consequence("at", message, &["body"], report);
@@ -155,7 +157,9 @@ fn acts_on_body(
 ) {
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
     if let Some(at) = places.find(|at| !at_body(bodies, grid, *at)) {
-        let message = format!("no body is at {at:?} at the start; allowed: half a spacing of points from one");
+        let message = format!(
+            "E0401: no body is at {at:?} at the start. Move it onto a body: half the spacing of material points away at most."
+        );
         record.consequence(key, message, &["body"], report);
     }
 }

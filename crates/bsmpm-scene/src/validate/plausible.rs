@@ -49,6 +49,13 @@ impl Scale {
     }
 }
 
+impl Scale {
+    /// The stress in words, if it is known.
+    fn shown(&self) -> String {
+        self.stress.map_or(String::new(), |stress| format!(" ({:.3} kPa)", 1e-3 * stress))
+    }
+}
+
 fn length(vector: [f64; 3]) -> f64 {
     vector.iter().map(|along| along * along).sum::<f64>().sqrt()
 }

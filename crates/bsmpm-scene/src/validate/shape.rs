@@ -207,7 +207,12 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
         PolygonFault::Flat => (record.place("polygon"), "all corners lie on a line: the area is zero".to_owned()),
         PolygonFault::Crossing(i, j) => {
             let edge = |k: usize| format!("{:?} to {:?}", corners[k], corners[(k + 1) % corners.len()]);
-            (row(j), format!("the edge {} crosses or touches the edge {}", edge(j), edge(i)))
+            let message = format!(
+                "E0203: the edge {} crosses or touches the edge {}. List the corners in order around the body.",
+                edge(j),
+                edge(i)
+            );
+            (row(j), message)
         }
     };
     report.error(origin, &record.path_of("polygon"), message);
@@ -240,7 +245,11 @@ fn inside(
             let outside = |(k, corner): (usize, &[f64; 2])| Some((k, place::beyond(grid, *corner)?));
             if let Some((k, message)) = corners.iter().enumerate().find_map(outside) {
                 let origin = body.rows("polygon").map_or(body.place("polygon"), |rows| rows[k].origin);
-                report.error(origin, &body.path_of("polygon"), format!("corner {k} (from 0): {message}"));
+                report.error(
+                    origin,
+                    &body.path_of("polygon"),
+                    format!("E0204: corner {k} (from 0): {message}. Move the corner, or enlarge the grid."),
+                );
             }
         }
         BodyShape::Circle { .. } => {

@@ -38,7 +38,9 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
         ("surface", sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>()))
     };
     let at_bodies = |all: Vec<Triangle>| match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
-        Some(at) => Err(format!("no body is at {at:?} at the start; allowed: half a spacing of points from one")),
+        Some(at) => Err(format!(
+            "E0401: no body is at {at:?} at the start. Move it onto a body: half the spacing of material points away at most."
+        )),
         None if all.is_empty() => Err("no part of it is inside the grid".into()),
         None => Ok(all),
     };

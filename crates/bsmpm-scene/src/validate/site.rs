@@ -43,8 +43,9 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
     if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
-        let message =
-            format!("no body is at {from:?} to {to:?} at the start; allowed: half a spacing of points from one");
+        let message = format!(
+            "E0401: no body is at {from:?} to {to:?} at the start. Move it onto a body: half the spacing of material points away at most."
+        );
         record.consequence(key, message, &["body"], report);
     }
 }

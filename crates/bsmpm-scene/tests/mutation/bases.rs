@@ -197,4 +197,3 @@ pub fn all() -> Vec<String> {
     }
     bases
 }
-

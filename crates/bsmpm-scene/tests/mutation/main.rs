@@ -2,14 +2,15 @@
 //! refuses is refused at its place, the rest gives a case or errors; never a panic.
 
 mod bases;
+mod slips;
 mod written;
 
+use bases::{FULL, all as bases};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm_scene::schema::{Kind, Presence, ROOT, Table};
 use bsmpm_scene::{Case, Error, Geometry, Place, seed};
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use bases::{FULL, all as bases};
 use written::{STRESS, Written};
 
 /// Values that a key may be given by mistake.

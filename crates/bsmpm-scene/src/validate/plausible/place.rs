@@ -57,7 +57,9 @@ fn is_near(body: &Body, case: &Case, at: [f64; 3], reach: f64) -> bool {
     let directions = steps(0).flat_map(|x| steps(1).flat_map(move |y| steps(2).map(move |z| [x, y, z])));
     let places = |direction: [i32; 3]| {
         let largest = direction.iter().map(|part| part.abs()).max().unwrap_or(0).max(1);
-        DISTANCES.map(|part| std::array::from_fn(|axis| at[axis] + part * reach * f64::from(direction[axis]) / f64::from(largest)))
+        DISTANCES.map(|part| {
+            std::array::from_fn(|axis| at[axis] + part * reach * f64::from(direction[axis]) / f64::from(largest))
+        })
     };
     directions.flat_map(places).any(|place| is_in(body, &case.grid, place))
 }

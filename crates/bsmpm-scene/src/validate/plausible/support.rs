@@ -30,7 +30,8 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
         for piece in pieces {
             alone.bodies = piece.iter().map(|&body| case.bodies[body].clone()).collect();
             let is_held = |axis: &usize| holds_at_rest(&alone, *axis, None);
-            let free: Vec<&str> = (0..case.grid.dims()).filter(|axis| !is_held(axis)).map(|axis| ["x", "y", "z"][axis]).collect();
+            let free: Vec<&str> =
+                (0..case.grid.dims()).filter(|axis| !is_held(axis)).map(|axis| ["x", "y", "z"][axis]).collect();
             if free.is_empty() || piece.iter().any(|body| known.contains(body)) {
                 continue;
             }
@@ -64,9 +65,8 @@ fn pieces(case: &Case, there: &[usize]) -> Vec<Vec<usize>> {
         (0..case.grid.dims()).all(|axis| a[0][axis].max(b[0][axis]) - a[1][axis].min(b[1][axis]) <= reach)
     };
     let mut work = 0;
-    let mut act = |one: usize, other: usize| {
-        is_near(one, other) && !are_apart(case, [there[one], there[other]], &mut work)
-    };
+    let mut act =
+        |one: usize, other: usize| is_near(one, other) && !are_apart(case, [there[one], there[other]], &mut work);
     let pairs: Vec<[usize; 2]> =
         near_pairs(&bounds, reach).filter(|&(one, other)| act(one, other)).map(|(one, other)| [one, other]).collect();
     let pieces = pieces_of_pairs(there.len(), pairs.into_iter());

@@ -40,19 +40,21 @@ fn bare(record: &Record, key: &str) -> Option<f64> {
 pub(super) fn material(record: &Record, scale: &Scale, report: &mut Report<'_>) {
     if let Some(young) = bare(record, "young").filter(|young| is_soft(*young, scale)) {
         report.warn(format!(
-            "W0101: {}: {young} Pa is {} kPa, softer than soil under the stresses of this case. If kPa are meant, write \
-             \"{young} kPa\"; if not, \"{young} Pa\".",
+            "W0101: {}: {young} Pa is {} kPa, too soft for the stress in this case{}. If kPa are meant, write \"{young} kPa\"; \
+             otherwise write \"{young} Pa\".",
             record.path_of("young"),
-            1e-3 * young
+            1e-3 * young,
+            scale.shown()
         ));
     }
     for key in ["cohesion", "yield_stress", "residual_cohesion"] {
         let Some(strength) = bare(record, key).filter(|strength| is_weak(*strength, record, scale)) else { continue };
         report.warn(format!(
-            "W0102: {}: {strength} Pa is {} kPa, next to nothing under the stresses of this case. If kPa are meant, write \
-             \"{strength} kPa\"; if not, \"{strength} Pa\".",
+            "W0102: {}: {strength} Pa is {} kPa, negligible against the stress in this case{}. If kPa are meant, write \
+             \"{strength} kPa\"; otherwise write \"{strength} Pa\".",
             record.path_of(key),
-            1e-3 * strength
+            1e-3 * strength,
+            scale.shown()
         ));
     }
     for (key, least) in [
@@ -92,11 +94,11 @@ pub(super) fn loads(root: &Record, scale: &Scale, report: &mut Report<'_>) {
         let key = if record.gives("pressure") { "pressure" } else { "stress" };
         if let Some(load) = pressure.filter(|load| *load < LOAD && *load < NO_LOAD * stress) {
             report.warn(format!(
-                "W0110: {}: {load} Pa is {} kPa, next to nothing beside the stress of {:.3} kPa in this case. Write the unit: \
-                 \"{load} kPa\" or \"{load} Pa\".",
+                "W0110: {}: {load} Pa is {} kPa, negligible against the stress in this case{}. If kPa are meant, write \
+                 \"{load} kPa\"; otherwise write \"{load} Pa\".",
                 record.path_of(key),
                 1e-3 * load,
-                1e-3 * stress
+                scale.shown()
             ));
         }
     }
@@ -104,8 +106,8 @@ pub(super) fn loads(root: &Record, scale: &Scale, report: &mut Report<'_>) {
         let weight = stress * scale.height;
         if let Some(force) = bare_list(record, "force").filter(|force| *force < NO_FORCE * weight) {
             report.warn(format!(
-                "W0110: {}: {force} N is next to nothing beside the weight of {:.3} kN in this case. Write the unit: \
-                 \"{force} kN\" or \"{force} N\", per m in plane strain.",
+                "W0110: {}: {force} N is negligible against the weight in this case ({:.3} kN). Check the unit, and write it, \
+                 for example \"{force} kN/m\" in plane strain.",
                 record.path_of("force"),
                 1e-3 * weight
             ));

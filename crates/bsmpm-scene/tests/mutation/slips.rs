@@ -1,14 +1,10 @@
 //! One slip of the author gives one error, the one that names it: what only follows from it is not printed.
 
-#[path = "../mutation/bases.rs"]
-mod bases;
-#[path = "../mutation/written.rs"]
-mod written;
-
+use super::written::{self, Fits, Written};
+use super::{bases, without};
 use bsmpm_scene::schema::Kind;
 use bsmpm_scene::{Case, Error};
 use std::collections::BTreeMap;
-use written::{Fits, Written};
 
 /// What an author did, and what came of it.
 struct Slip {
@@ -31,17 +27,6 @@ fn misspelt(word: &str) -> String {
         letters.swap(middle - 1, middle);
     }
     letters.into_iter().collect()
-}
-
-/// The text without an entry, and without the comma that it leaves in an inline table.
-fn without(text: &str, written: &Written) -> String {
-    let (start, end) = (written.name.as_ref().map_or(0, |name| name.start), written.value.end);
-    let (before, after) = (&text[..start], &text[end..]);
-    match (after.strip_prefix(','), before.trim_end().strip_suffix(',')) {
-        (Some(after), _) => format!("{before}{after}"),
-        (None, Some(before)) => format!("{before}{after}"),
-        (None, None) => format!("{before}{after}"),
-    }
 }
 
 /// Every key of a case removed and misspelt, every word misspelt, every value of another type.
@@ -86,7 +71,7 @@ fn brackets(base: &str) -> Vec<Slip> {
 fn one_slip_gives_one_error() {
     let mut counts: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
     let mut several = Vec::new();
-    for base in bases::all() {
+    for base in bases() {
         for slip in slips(&base).into_iter().chain(brackets(&base)) {
             let errors = errors(&slip.text);
             counts.entry(slip.kind).or_default()[errors.len().min(2)] += 1;
