@@ -29,7 +29,7 @@ gate() {
 
 # shellcheck disable=SC2317  # called through gate
 scripts_are_sound() {
-    local files=(scripts/* ci/run.sh .ci/run) file
+    local files=(scripts/* ci/run.sh ci/language .ci/run) file
     for file in "${files[@]}"; do
         bash -n "$file" || return
     done
@@ -69,6 +69,7 @@ gate "setup" scripts/setup
 gate "lock file" cargo tree --locked --workspace --depth 0 --quiet
 gate "scripts" scripts_are_sound
 gate "format" is_formatted
+gate "language" ci/language
 gate "clippy" cargo clippy --workspace --all-targets -- -D warnings
 RUSTDOCFLAGS='-D warnings' gate "docs" cargo doc --workspace --no-deps --lib
 gate "tests" scripts/test

@@ -3,7 +3,7 @@
 
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd -P)
 
-# A shell that has not been opened anew since Rust came does not know it yet.
+# A shell that has not been opened again since Rust came does not know it yet.
 command -v cargo >/dev/null || PATH="$PATH:${CARGO_HOME:-${HOME:-}/.cargo}/bin"
 
 say() {

@@ -117,15 +117,15 @@ fn trial(u: &mut Unstructured<'_>) -> Result<Symmetric> {
 
 fn check(material: &Material, trial: &Symmetric, response: &Response, state: &[f64]) {
     let (tau, b_e) = (response.tau(), response.b_e());
-    let told = || format!("{material:?} at {trial:?}: {response:?}");
+    let context = || format!("{material:?} at {trial:?}: {response:?}");
     let principal = response.principal_tau();
     let increments = [response.gap(), response.plastic_increment(), response.dissipation()];
     let numbers = tau.0.iter().chain(&b_e.0).chain(&principal).chain(&increments).chain(state);
-    assert!(numbers.into_iter().all(|number| number.is_finite()), "not finite: {}", told());
-    assert!(principal[0] >= principal[1] && principal[1] >= principal[2], "order: {}", told());
-    assert!(increments[0] >= 0.0 && increments[1] >= 0.0, "sign: {}", told());
+    assert!(numbers.into_iter().all(|number| number.is_finite()), "not finite: {}", context());
+    assert!(principal[0] >= principal[1] && principal[1] >= principal[2], "order: {}", context());
+    assert!(increments[0] >= 0.0 && increments[1] >= 0.0, "sign: {}", context());
     let tangent = response.linearise(&Tensor::new(0.3, -0.2, 0.1, 0.5, -0.4, 0.2, 0.1, 0.0, 0.6));
-    assert!(tangent.iter().all(|number| number.is_finite()), "tangent: {}", told());
+    assert!(tangent.iter().all(|number| number.is_finite()), "tangent: {}", context());
     let scale = yield_scale(material, principal, state);
     if let Material::MuI(law) = material {
         // Sheared at a rate it lies beyond its surface at rest, and within that of the fastest shear.
@@ -136,10 +136,10 @@ fn check(material: &Material, trial: &Symmetric, response: &Response, state: &[f
         let (lambda, mu) = material.elastic().lame();
         let strain = response.principal_eps_e().iter().fold(0.0_f64, |most, eps| most.max(eps.abs()));
         let rounding = 32.0 * f64::EPSILON * (3.0 * lambda.abs() + 2.0 * mu) * strain;
-        assert!(fastest.excess(principal, state) <= SAME * scale + rounding, "yield: {}", told());
+        assert!(fastest.excess(principal, state) <= SAME * scale + rounding, "yield: {}", context());
         return;
     }
-    assert!(material.excess(principal, state) <= SAME * scale, "yield: {}", told());
+    assert!(material.excess(principal, state) <= SAME * scale, "yield: {}", context());
     second_return(material, response, scale, state);
 }
 

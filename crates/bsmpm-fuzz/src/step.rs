@@ -25,14 +25,14 @@ pub fn target(data: &[u8]) {
 }
 
 fn try_steps(case: &Case) {
-    let told = || format!("in\n{}", case.text);
-    let scene = model::model::<PlaneStrain, 2>(case).unwrap_or_else(|error| panic!("{error} {}", told()));
+    let context = || format!("in\n{}", case.text);
+    let scene = model::model::<PlaneStrain, 2>(case).unwrap_or_else(|error| panic!("{error} {}", context()));
     let points = model::points::<PlaneStrain, 2>(case, 0..case.grid.spans(0), |_| true);
     let mut run = SerialRun::new(scene, points);
     if run.start(case).is_err() {
         return;
     }
-    check(&run.points, &run.model.grid, &told);
+    check(&run.points, &run.model.grid, &context);
     let schedule = model::schedule(case);
     let mut t = 0.0;
     for _ in 0..STEPS {
@@ -40,14 +40,18 @@ fn try_steps(case: &Case) {
         let before = (run.points.clone(), run.guess.clone());
         match run.step(t, end - t) {
             Ok(report) => {
-                assert!(report.force.is_finite() && run.guess.iter().all(|u| u.is_finite()), "{report:?} {}", told());
-                check(&run.points, &run.model.grid, &told);
+                assert!(
+                    report.force.is_finite() && run.guess.iter().all(|u| u.is_finite()),
+                    "{report:?} {}",
+                    context()
+                );
+                check(&run.points, &run.model.grid, &context);
                 assert_eq!((&run.points.id, &run.points.mass), (&before.0.id, &before.0.mass));
                 run.points.sort_by_cell(&run.model.grid);
             }
             Err(error) => {
                 assert!(!error.to_string().is_empty());
-                assert!((&run.points, &run.guess) == (&before.0, &before.1), "{error} left traces {}", told());
+                assert!((&run.points, &run.guess) == (&before.0, &before.1), "{error} left traces {}", context());
                 return;
             }
         }
@@ -56,17 +60,17 @@ fn try_steps(case: &Case) {
 }
 
 /// All numbers finite, no point outside the grid or inside out.
-fn check(points: &Points<2>, grid: &Grid<2>, told: &dyn Fn() -> String) {
+fn check(points: &Points<2>, grid: &Grid<2>, context: &dyn Fn() -> String) {
     let mut points = points.clone();
     for (name, column) in points.named_columns() {
         if column.number() == bsmpm::points::Number::F64 {
             let mut bytes = Vec::new();
             (0..column.rows()).for_each(|p| column.put(p, &mut bytes));
             let numbers = bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight")));
-            assert!(numbers.into_iter().all(f64::is_finite), "{name} is not finite {}", told());
+            assert!(numbers.into_iter().all(f64::is_finite), "{name} is not finite {}", context());
         }
     }
-    assert!(points.x.iter().all(|x| grid.locate(x).is_some()), "outside {}", told());
-    assert!(points.F.iter().all(|F| F.determinant() > 0.0), "inside out {}", told());
-    assert!(points.eps_p.iter().all(|eps_p| *eps_p >= 0.0), "negative plastic strain {}", told());
+    assert!(points.x.iter().all(|x| grid.locate(x).is_some()), "outside {}", context());
+    assert!(points.F.iter().all(|F| F.determinant() > 0.0), "inside out {}", context());
+    assert!(points.eps_p.iter().all(|eps_p| *eps_p >= 0.0), "negative plastic strain {}", context());
 }

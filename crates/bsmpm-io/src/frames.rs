@@ -63,7 +63,7 @@ impl Frames {
         Ok(Self { directory, entries: Vec::new(), filled: Vec::new(), manifest: None, ending: None })
     }
 
-    /// Goes on with the frames of a run, those of `entries` that are there, and lists them anew.
+    /// Goes on with the frames of a run, those of `entries` that are there, and lists them again.
     ///
     /// # Errors
     /// [`Error::File`] when the folder cannot be made or the list not written.
@@ -92,7 +92,7 @@ impl Frames {
     }
 
     /// Fills the file of a frame whose points come part by part, and leaves it to a thread to write the `manifest`,
-    /// which names it, to give the file its name, and to list it. [`Frames::ended`] tells when that is done.
+    /// which names it, to give the file its name, and to list it. [`Frames::ended`] reports when that is done.
     ///
     /// # Errors
     /// Those of [`vtu::write_parts`], and of the thread that had frames before.

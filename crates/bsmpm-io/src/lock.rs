@@ -176,7 +176,7 @@ impl FoundLock {
         Self::read(path)
     }
 
-    /// What is to be told when `own` takes this lock over; an error if its holder lives or may live.
+    /// What is to be reported when `own` takes this lock over; an error if its holder lives or may live.
     fn yields(&self, directory: &Path, own: &Holder, unseen: Unseen) -> Result<String, Error> {
         let unknown = "a run that it does not name".to_owned();
         let name = self.holder.as_ref().map_or(unknown, Holder::to_string);

@@ -71,7 +71,7 @@ pub struct Manifest {
     /// s  by the clock, by phase.
     #[serde(default)]
     pub timers: BTreeMap<String, f64>,
-    /// What the ranks told each other, by kind.
+    /// What the ranks sent each other, by kind.
     #[serde(default)]
     pub communication: BTreeMap<String, Communication>,
     /// What solved the linear systems: `stiffness`, which the secants correct, `newton`, Newton's general ones, and

@@ -32,7 +32,7 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), Error> {
 /// Writes a frame to the file `path` as its points come, replacing it in one go: the same bytes, whatever the parts.
 ///
 /// # Errors
-/// As [`write()`]; [`Error::Length`] if not so many points come as were told.
+/// As [`write()`]; [`Error::Length`] if not so many points come as were announced.
 pub fn write_parts(path: &Path, parts: Parts<'_>) -> Result<(), Error> {
     filled(path, parts)?.give_name()?;
     atomic::sync_folder(path).map_err(Error::file("write", path))

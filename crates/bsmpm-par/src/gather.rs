@@ -49,7 +49,7 @@ enum FieldSource<'a, const D: usize> {
 pub struct Around<'a, const D: usize> {
     /// laws by number
     pub materials: &'a [Material],
-    /// ids of every body's points; empty if no frame tells bodies
+    /// ids of every body's points; empty if no frame reports bodies
     pub bodies: &'a [Range<u64>],
     /// water at the time of the frame
     pub water: Option<PoreWater<'a, D>>,

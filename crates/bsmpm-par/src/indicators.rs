@@ -31,15 +31,15 @@ const DEFECT: [f64; 2] = [0.2, 0.8];
 /// Usual number of points in an inner cell: fewer than 2 x 2 integrate too little, and no number is too many.
 const POINTS: [f64; 2] = [3.0, 1e3];
 /// Usual compression with fewer points along an axis of a cell than so many: an elastic bar on 64 cells that its weight
-/// compresses by 1, 5, 9, 15, 28 and 52 % has a mean error of its stress of .006, .3, .8, 1.0, 1.0 and .6 % with 2, .4
-/// and .3 % at 28 and 52 % with 3, .2 and .07 % at 52 % with 4 and 6 points. With fitted volumes it is .04 % at most,
-/// with 2 or 3 points: no compression is unusual then.
+/// compresses by 1, 5, 9, 15, 28 and 52 % has a mean error of its stress of 0.006, 0.3, 0.8, 1.0, 1.0 and 0.6 % with 2,
+/// 0.4 and 0.3 % at 28 and 52 % with 3, 0.2 and 0.07 % at 52 % with 4 and 6 points. With fitted volumes it is 0.04 % at
+/// most, with 2 or 3 points: no compression is unusual then.
 const COMPRESSION: (usize, f64) = (4, 0.1);
 /// Usual noise of the pressure about its average and about planes.
 const NOISE: [f64; 2] = [0.25, 0.3];
 /// Usual closure of energy, and usual numerical loss.
 const ENERGY: [f64; 2] = [1e-4, 0.1];
-/// Usual growth of energy beyond the work done; the run ends at .05.
+/// Usual growth of energy beyond the work done; the run ends at 0.05.
 const GROWTH: f64 = 0.02;
 /// Usual part of the water that is lost: a step may leave so much of its own.
 const WATER: f64 = 1e-4;
@@ -83,7 +83,7 @@ const SHIFT_FITTED: f64 = 0.2;
 /// row of points has crossed the line, by 75 % and more.
 const SHIFT_WATER: f64 = 0.1;
 
-/// What the state at the end tells.
+/// What the state at the end reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IndicatorState {
     defect: Option<Defect>,

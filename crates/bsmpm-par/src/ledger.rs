@@ -42,7 +42,7 @@ pub struct Ledger {
     frames: Frames,
     store: Option<Store>, // once there is a checkpoint
     news: Vec<String>,    // warnings of this start
-    has_gaps: bool,       // a table was begun anew
+    has_gaps: bool,       // a table was begun again
     keep: u64,
     end: f64,
     dt: f64,
@@ -131,7 +131,7 @@ impl Ledger {
         self.faces = bsmpm_scene::model::faces(case, t);
     }
 
-    /// Warnings of this start, which are still to be told.
+    /// Warnings of this start, which are still to be reported.
     pub fn news(&mut self) -> Vec<String> {
         std::mem::take(&mut self.news)
     }
@@ -159,14 +159,15 @@ impl Ledger {
         self.directory.path()
     }
 
-    /// A row of `history.csv`; the checks whose time this is take their value, or none where a column's is not `told`.
-    pub fn history(&mut self, (step, time): (u64, f64), row: &[f64], told: &[bool]) -> Result<(), Error> {
+    /// A row of `history.csv`; the checks whose time this is take their value, or none where a column's is not
+    /// `is_reported`.
+    pub fn history(&mut self, (step, time): (u64, f64), row: &[f64], is_reported: &[bool]) -> Result<(), Error> {
         let mut cells = vec![Cell::Int(step), Cell::Float(time)];
         cells.extend(row.iter().map(|&value| Cell::Float(value)));
         for check in &mut self.manifest.checks {
             if (check.at.unwrap_or(self.end) - time).abs() <= 1e-6 * self.dt {
                 let column = self.columns.iter().position(|column| column.name == check.quantity);
-                check.value = column.filter(|&column| told[column]).map(|column| row[column]);
+                check.value = column.filter(|&column| is_reported[column]).map(|column| row[column]);
             }
         }
         self.history.row(&cells)
@@ -189,7 +190,7 @@ impl Ledger {
         self.manifest.summary.steps = number;
         self.attempts(accepted.rejected.len(), accepted.counts);
         if self.manifest.ranks > 1 {
-            self.manifest.balance.get_or_insert_default().enter(cost.imbalance, cost.is_cut_anew);
+            self.manifest.balance.get_or_insert_default().enter(cost.imbalance, cost.is_cut_again);
         }
         self.manifest.summary.newton_steps += u64::from(report.newton_iterations > 0);
         self.measures(number, report);
@@ -241,7 +242,7 @@ impl Ledger {
         self.residuals(number, accepted)
     }
 
-    /// What a step tells of how far its state can be trusted. A state without a direction from it was accepted as
+    /// What a step reports of how far its state can be trusted. A state without a direction from it was accepted as
     /// balanced to round-off, or far below the tolerance; one that settled, by its forces alone.
     fn measures(&mut self, number: u64, report: &StepReport) {
         let criteria = self.criteria;

@@ -1,4 +1,4 @@
-//! What the operating system tells of this process and its libraries (Linux; nothing elsewhere).
+//! What the operating system reports of this process and its libraries (Linux; nothing elsewhere).
 
 use std::fs;
 
@@ -26,7 +26,7 @@ pub fn processors() -> Option<u64> {
     Some(listed.lines().filter(|line| line.starts_with("processor")).count() as u64).filter(|&count| count > 0)
 }
 
-/// File name of the BLAS that is loaded, if it can be told.
+/// File name of the BLAS that is loaded, if it can be determined.
 pub fn blas() -> Option<String> {
     let maps = fs::read_to_string("/proc/self/maps").unwrap_or_default();
     let files = maps.lines().filter_map(|line| line.split('/').next_back());

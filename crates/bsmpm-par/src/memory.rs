@@ -1,5 +1,5 @@
 //! Whether a case fits into memory: its estimate against what the command line or this host allows, before anything is
-//! allocated. Linux tells; elsewhere only the command line does.
+//! allocated. Linux reports; elsewhere only the command line does.
 
 use crate::cli::Arguments;
 use crate::launch::say;
@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_the_system_tells_is_read() {
+    fn what_the_system_reports_is_read() {
         let memory = "MemTotal: 5 kB\nMemAvailable:   22661120 kB\n";
         assert_eq!(kilobytes(memory, "MemAvailable:"), Some(22_661_120 * 1024));
         let limits =

@@ -17,7 +17,7 @@ use bsmpm_scene::words::ProfileQuantity;
 /// strain, pore pressure and the excess in it.
 const FIELDS: usize = 3 + 3 + 3 + 6 + 1 + 2;
 
-/// A row for every place that material is at: distance along the line, present place, then what the profile tells;
+/// A row for every place that material is at: distance along the line, present place, then what the profile reports;
 /// `lower` is the grid's corner, `t` the time. Collective.
 pub fn rows<K: Kinematics<D>, const D: usize>(
     profile: &Profile,

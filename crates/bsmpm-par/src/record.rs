@@ -140,17 +140,17 @@ impl<const D: usize> Recorder<D> {
     }
 
     /// Whether the number of every column of the last row is one: means and places of no point are none.
-    pub fn told(&self) -> Vec<bool> {
+    pub fn reported(&self) -> Vec<bool> {
         let is_sum = |history: &History| {
             let quantity = &history.quantity;
             matches!(quantity, Quantity::Mass { .. } | Quantity::Momentum { .. } | Quantity::AngularMomentum { .. })
                 || matches!(quantity, Quantity::KineticEnergy { .. })
         };
-        let told = |(number, history): (usize, &History)| {
-            let is_told = is_sum(history) || !self.empty.contains(&number);
-            std::iter::repeat_n(is_told, history.columns().len())
+        let reported = |(number, history): (usize, &History)| {
+            let is_reported = is_sum(history) || !self.empty.contains(&number);
+            std::iter::repeat_n(is_reported, history.columns().len())
         };
-        self.histories.iter().enumerate().flat_map(told).collect()
+        self.histories.iter().enumerate().flat_map(reported).collect()
     }
 
     /// Names of the histories in whose box no point has been yet, if there are any.
@@ -347,7 +347,7 @@ impl<const D: usize> Recorder<D> {
     }
 }
 
-/// Whether it tells how far the footing or a rigid body has moved.
+/// Whether it reports how far the footing or a rigid body has moved.
 fn is_of_rigid(quantity: &Quantity) -> bool {
     use Measurement::{RigidDisplacement, RigidRotation};
     matches!(quantity, Quantity::Penetration | Quantity::Rigid { what: RigidDisplacement | RigidRotation, .. })

@@ -56,7 +56,7 @@ pub struct Beginning {
     pub existing: Existing,
     /// How often it has been started before, on the first rank.
     pub restarts: Vec<manifest::ManifestRestart>,
-    /// What is to be told, on the first rank.
+    /// What is to be reported, on the first rank.
     pub warnings: Vec<String>,
 }
 
@@ -74,7 +74,7 @@ pub struct Resumed<'h> {
     pub state: CheckpointState,
     /// Keys of the case that have changed since, with both values.
     pub changed: Vec<String>,
-    /// What is to be told, on the first rank.
+    /// What is to be reported, on the first rank.
     pub warnings: Vec<String>,
     /// Where the run went on before, on the first rank.
     pub restarts: Vec<manifest::ManifestRestart>,
@@ -113,9 +113,9 @@ pub fn plan<'h>(
         Restart::Auto => find(&world, Wanted::Newest(&folder))?,
     };
     let Some(found) = found else {
-        let anew =
-            held.map_or_else(|| Ok(Beginning::default()), |_| there::anew(run.as_ref(), &passed_over, world.size()));
-        return agree(&world, anew).map(RunStart::New);
+        let afresh =
+            held.map_or_else(|| Ok(Beginning::default()), |_| there::afresh(run.as_ref(), &passed_over, world.size()));
+        return agree(&world, afresh).map(RunStart::New);
     };
     let restarts = run.map_or_else(Vec::new, |run| run.restarts);
     agree(&world, if auto { there::futile(&restarts, found.record.step) } else { Ok(()) })?;

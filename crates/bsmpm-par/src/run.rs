@@ -75,13 +75,13 @@ pub struct Before {
     pub is_branch: bool,
     /// step of the newest frame
     pub last_frame: Option<u64>,
-    /// strips of which it was told that they hold nothing
+    /// strips of which it was reported that they hold nothing
     pub told_strips: BTreeSet<usize>,
-    /// rigid bodies of which it was told what is doubtful of them
+    /// rigid bodies of which it was reported what is doubtful of them
     pub told_rigid: BTreeSet<usize>,
     /// s  by phase; on rank 0
     pub timers: BTreeMap<String, f64>,
-    /// what the ranks had told each other, by kind; on rank 0
+    /// what the ranks had sent each other, by kind; on rank 0
     pub communication: BTreeMap<String, Communication>,
     /// how its linear solves had ended; on rank 0
     pub linear: BTreeMap<String, SolverNames>,
@@ -176,7 +176,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         self.warn(format!("step {step} converged and was rejected, as BSMPM_FAULT wants; it is made again"));
     }
 
-    /// A warning, told and kept.
+    /// A warning, reported and kept.
     fn warn(&mut self, warning: String) {
         self.log.line("warning", &headed(&warning, "warning"));
         if let Some(ledger) = &mut self.ledger
@@ -230,7 +230,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             ledger.front(front);
         }
         let written =
-            self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history((step, time), &row, &self.recorder.told()));
+            self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history((step, time), &row, &self.recorder.reported()));
         self.require(written);
     }
 

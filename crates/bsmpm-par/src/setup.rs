@@ -1,4 +1,5 @@
-//! What a run needs of its case beside the model: the first cut, the linear solver, what is told of it in the manifest.
+//! What a run needs of its case beside the model: the first cut, the linear solver, what is reported of it in the
+//! manifest.
 
 use bsmpm::error::StepError;
 use bsmpm::initial::{Equilibrium, Settling};
@@ -24,7 +25,7 @@ pub type Cut = (Vec<Range<usize>>, Slabs, usize);
 /// A state at the start, and what leading it to equilibrium took, if the case wants that.
 pub type Start = (Equilibrium, Option<Settling>);
 
-/// Gives the points the stress that the case wants at the start, and tells how well it is balanced.
+/// Gives the points the stress that the case wants at the start, and reports how well it is balanced.
 pub fn start<K: Kinematics<D>, const D: usize>(
     case: &Case,
     simulation: &mut Simulation<'_, K, D>,
@@ -183,7 +184,7 @@ pub fn warnings(case: &Case, ranks: usize) -> Vec<String> {
     warnings
 }
 
-/// Part of a body's size beyond which the smoothing of all steps is told.
+/// Part of a body's size beyond which the smoothing of all steps is reported.
 const SMALL: f64 = 0.1;
 
 /// Length (m) along which modified F-bar smooths in so many steps, and the thickness of the thinnest piece of connected

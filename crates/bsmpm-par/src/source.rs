@@ -76,10 +76,10 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         let (cells, path, width) = (narrowest.cells, &narrowest.path, narrowest.brief_width());
         lines.push(format!("hole or notch    {cells:.1} cells across {path} of {width} m, the fewest of all"));
     }
-    let told = case.notes.iter().map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));
+    let noted = case.notes.iter().map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));
     let chosen = setup::choices(case, ranks, options);
     lines.extend(
-        told.chain(chosen.iter().map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason))),
+        noted.chain(chosen.iter().map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason))),
     );
     lines.extend(case.renamings.iter().map(|renaming| format!("note: {renaming}")));
     lines.extend(setup::warnings(case, ranks).iter().map(|warning| headed(warning, "warning")));

@@ -37,12 +37,12 @@ pub fn admit<K: Kinematics<D>, const D: usize>(
 ) -> Result<Option<String>, Refusal> {
     let need = Need::of(world, (held, arguments.force), case, simulation);
     let shortage = held.and_then(|held| need.shortage(held, arguments.force));
-    let strict = |told: String| Refusal::new(exit::WRITE, format!("{told}; nothing was run"));
-    let told = match shortage {
-        Some(told) if arguments.strict_space => Err(strict(told)),
-        told => Ok(told),
+    let strict = |warning: String| Refusal::new(exit::WRITE, format!("{warning}; nothing was run"));
+    let warning = match shortage {
+        Some(warning) if arguments.strict_space => Err(strict(warning)),
+        warning => Ok(warning),
     };
-    agree(world, told)
+    agree(world, warning)
 }
 
 impl Need {
@@ -91,7 +91,7 @@ impl Need {
         frames.saturating_add(self.checkpoints.saturating_mul(self.checkpoint))
     }
 
-    /// What is to be told if there is less.
+    /// What is to be reported if there is less.
     fn shortage(&self, held: &OutputDirectory, emptied: bool) -> Option<String> {
         // A system that cannot tell is no reason to say anything.
         let free = disk::free(held.path()).ok()? + if emptied { doomed(held) } else { 0 };

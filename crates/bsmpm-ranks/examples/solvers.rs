@@ -16,7 +16,7 @@ use petsc_rs::Petsc;
 use std::process::ExitCode;
 use std::rc::Rc;
 
-/// Solves whose mean is told.
+/// Solves whose mean is reported.
 const SOLVES: usize = 50;
 
 /// A panic on one rank ends all of them.

@@ -263,7 +263,7 @@ impl Halo for MpiHalo {
         let outgoing: Vec<_> = self.neighbours.iter().map(|other| other.mine.packed(nodal, width)).collect();
         let incoming = self.exchange(TrafficKind::HaloShare, &outgoing, |other| other.theirs.count() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
-            other.theirs.unpack(part, (nodal, width), |_, told| told);
+            other.theirs.unpack(part, (nodal, width), |_, received| received);
         }
     }
 

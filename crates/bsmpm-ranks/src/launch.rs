@@ -5,7 +5,7 @@ use mpi::environment::Universe;
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::fmt;
 
-/// Variables by which a launcher tells a process how many ranks it started.
+/// Variables by which a launcher gives a process the number of ranks.
 const LAUNCHED: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", "SLURM_STEP_NUM_TASKS"];
 
 /// Why there are no ranks.

@@ -1,6 +1,6 @@
 //! What the work of a rank is measured by: counts, never a clock, so that a run repeats.
 //!
-//! Two fits to runs of many sizes on one rank (`scripts/scaling`) say that a node of the window costs .95 and 1.07 of
+//! Two fits to runs of many sizes on one rank (`scripts/scaling`) say that a node of the window costs 0.95 and 1.07 of
 //! what a point does in an evaluation, everything included. A point that yields cost 4 % more in an earlier fit, and an
 //! occupied cell nothing that its points did not, so neither counts.
 
@@ -13,7 +13,7 @@ use bsmpm::tensor::Vector;
 const NODE: f64 = 1.0;
 /// Work of a new cut on every rank, in evaluations. Measured with 3,200 points on two ranks: 1.0 ms for moving points
 /// and nodal values, and in the 57 % of steps that would have kept it, 3.7 ms for the linear solver's new pattern; an
-/// evaluation takes .53 ms.
+/// evaluation takes 0.53 ms.
 const PRICE: f64 = 6.0;
 
 /// Points of this rank in every column of cells of the grid's room.

@@ -1,4 +1,4 @@
-//! Points and nodal values that change their rank: after every step, and when the grid is cut anew.
+//! Points and nodal values that change their rank: after every step, and when the grid is cut again.
 //! [`plan`](crate::plan) says who gets what.
 
 use crate::plan::{NodePlan, PointPlan};

@@ -1,4 +1,4 @@
-//! Who gets what when points leave their rank's cells and when the grid is cut anew: plain data, without MPI.
+//! Who gets what when points leave their rank's cells and when the grid is cut again: plain data, without MPI.
 
 use crate::slab::{NodeBox, Slabs, common};
 use std::ops::Range;
@@ -30,12 +30,12 @@ impl PointPlan {
     }
 }
 
-/// Nodes that change hands between two cuts: the old owner of a box tells it to all whose new window has of it.
+/// Nodes that change hands between two cuts: the old owner of a box sends it to all whose new window has of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NodePlan {
-    /// what this rank tells, itself included, ascending by rank
+    /// what this rank sends, itself included, ascending by rank
     pub send: Vec<(usize, NodeBox)>,
-    /// what it is told, ascending by rank: together what of its new window there was before, each node once
+    /// what it receives, ascending by rank: together what of its new window there was before, each node once
     pub receive: Vec<(usize, NodeBox)>,
 }
 
@@ -79,9 +79,9 @@ mod tests {
             let nodes = |[layers, rows]: &NodeBox| -> Vec<[usize; 2]> {
                 layers.clone().flat_map(|layer| rows.clone().map(move |row| [layer, row])).collect()
             };
-            let mut told: Vec<[usize; 2]> = plan.receive.iter().flat_map(|(_, part)| nodes(part)).collect();
-            told.sort_unstable();
-            assert_eq!(told, nodes(&new.nodes(rank, of)));
+            let mut received: Vec<[usize; 2]> = plan.receive.iter().flat_map(|(_, part)| nodes(part)).collect();
+            received.sort_unstable();
+            assert_eq!(received, nodes(&new.nodes(rank, of)));
             for (other, part) in plan.receive {
                 assert!(NodePlan::new((old, new), other, of).send.contains(&(rank, part)));
             }
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn each_new_window_is_told_every_node_once_by_its_old_owner() {
+    fn each_new_window_receives_every_node_once_from_its_old_owner() {
         let cut = |bounds: [usize; 5]| Slabs::new(bounds.to_vec(), 4, 0..12).unwrap();
         for (old, new) in CUTS.iter().flat_map(|old| CUTS.map(|new| (cut(*old), cut(new)))) {
             (1..4).for_each(|q| agrees((&old, &new), 4, q));
@@ -107,15 +107,15 @@ mod tests {
     }
 
     #[test]
-    fn layers_that_were_in_no_window_before_are_told_by_nobody() {
+    fn layers_that_were_in_no_window_before_are_sent_by_nobody() {
         let (old, new) = (Slabs::new(vec![4, 6, 8], 2, 4..8), Slabs::new(vec![2, 5, 12], 2, 2..12));
         let (old, new) = (old.unwrap(), new.unwrap());
         let boxed = |parts: Vec<(usize, Range<usize>)>| -> Vec<(usize, NodeBox)> {
             parts.into_iter().map(|(rank, layers)| (rank, [layers, 0..3])).collect()
         };
         let [first, last] = [0, 1].map(|rank| NodePlan::new((&old, &new), rank, (2, &(0..1))));
-        let told = (boxed(vec![(0, 4..6), (1, 6..7)]), boxed(vec![(0, 5..6), (1, 6..10)]));
-        assert_eq!((first.receive, last.receive), told);
+        let received = (boxed(vec![(0, 4..6), (1, 6..7)]), boxed(vec![(0, 5..6), (1, 6..10)]));
+        assert_eq!((first.receive, last.receive), received);
         assert_eq!((first.send, last.send), (boxed(vec![(0, 4..6), (1, 5..6)]), boxed(vec![(0, 6..7), (1, 6..10)])));
     }
 

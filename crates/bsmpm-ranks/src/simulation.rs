@@ -53,8 +53,8 @@ pub struct Cost {
     pub bytes: u64,
     /// largest load of a rank over the mean, while the step was made
     pub imbalance: f64,
-    /// whether the grid was cut anew after it
-    pub is_cut_anew: bool,
+    /// whether the grid was cut again after it
+    pub is_cut_again: bool,
 }
 
 /// The distributed state of a run.
@@ -99,7 +99,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     }
 
     /// Gives the points a stress at the start, see [`initial`], which `settles` to equilibrium with the materials'
-    /// laws, and tells how well it is balanced, and what that took.
+    /// laws, and reports how well it is balanced, and what that took.
     pub fn stress(
         &mut self,
         start: StartStress<'_, D>,
@@ -189,13 +189,13 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             let exchange = (self.halo.world(), timers.traffic());
             migrate::points(exchange, &self.slabs, &self.model.grid, &mut self.points);
             let looks = self.slabs.ranks() > 1 && self.steps.is_multiple_of(LOOK);
-            let is_cut_anew = looks && self.balance(accepted.counts.evaluations as u64);
+            let is_cut_again = looks && self.balance(accepted.counts.evaluations as u64);
             let (mut cost, has_room) = self.count(before, load);
             if !has_room {
                 self.make_room();
                 (cost, _) = self.count(before, load);
             }
-            self.cost = Cost { is_cut_anew: is_cut_anew || !has_room, ..cost };
+            self.cost = Cost { is_cut_again: is_cut_again || !has_room, ..cost };
         }
         Some(outcome)
     }
@@ -239,7 +239,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         [numbers[0] as u64, numbers[1] as u64]
     }
 
-    /// What acts at once moves ground and water as no step before it tells.
+    /// What acts at once moves ground and water as no step before it shows.
     fn begin_afresh(&mut self) {
         self.stepper.begin_stage();
         self.points.forget_flow();
@@ -283,8 +283,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Ok(())
     }
 
-    /// Finds what faces that absorb hold anew, once a stage has changed the ground, or what holds or loads it; the free
-    /// field goes on. Fails on all ranks if there is no equilibrium.
+    /// Finds what faces that absorb hold again, once a stage has changed the ground, or what holds or loads it; the
+    /// free field goes on. Fails on all ranks if there is no equilibrium.
     pub fn hold(&mut self) -> Result<(), StepError> {
         let t = self.time();
         let Self { model, points, halo, solver, .. } = self;
@@ -306,27 +306,27 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         grid.occupied(&self.points.x).is_some_and(|occupied| !grid.has_room(&occupied))
     }
 
-    /// What has been told since `before` by all ranks, and how even this one's `load` and the others' are; and whether
+    /// What has been sent since `before` by all ranks, and how even this one's `load` and the others' are; and whether
     /// the grid has room for the points of all. One reduction.
     fn count(&self, before: TrafficCounts, load: f64) -> (Cost, bool) {
-        let told = self.timers.traffic().counts().since(&before);
+        let sent = self.timers.traffic().counts().since(&before);
         let mut numbers = vec![0.0; 3 + self.slabs.ranks()];
-        numbers[..2].copy_from_slice(&told.sent().map(|count| count as f64));
+        numbers[..2].copy_from_slice(&sent.sent().map(|count| count as f64));
         numbers[2] = f64::from(self.lacks_room());
         numbers[3 + self.petsc.rank()] = load;
         self.halo.reduce(&mut numbers);
         let cost = Cost {
-            reductions: told.of(TrafficKind::Reduction).calls + 1,
+            reductions: sent.of(TrafficKind::Reduction).calls + 1,
             messages: numbers[0] as u64,
             bytes: numbers[1] as u64,
             imbalance: load::imbalance(&numbers[3..]),
-            is_cut_anew: false,
+            is_cut_again: false,
         };
         (cost, numbers[2] == 0.0)
     }
 
-    /// Cuts the grid anew where the points have moved away from the present cut so far that it pays in as many steps as
-    /// there are to the next look, of so many evaluations each: a rule of counts only, so that a run repeats.
+    /// Cuts the grid again where the points have moved away from the present cut so far that it pays in as many steps
+    /// as there are to the next look, of so many evaluations each: a rule of counts only, so that a run repeats.
     fn balance(&mut self, evaluations: u64) -> bool {
         let grid = &self.model.grid;
         let mut counts = load::points_by_column(grid, &self.points);
@@ -352,7 +352,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     }
 
     /// Those slabs cut into as many parts as the present ones have, by what they hold of all ranks' points, which is
-    /// told, too; one reduction.
+    /// reported, too; one reduction.
     fn parted(&self, grid: &Grid<D>, slabs: Slabs) -> Option<(Slabs, Vec<f64>)> {
         let mut counts = load::points_by_row(grid, &slabs, &self.points);
         self.halo.reduce(&mut counts);
@@ -360,7 +360,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Some((parted, counts))
     }
 
-    /// Makes room for the points of all ranks, and cuts it anew.
+    /// Makes room for the points of all ranks, and cuts it again.
     fn make_room(&mut self) {
         let occupied = self.model.grid.occupied(&self.points.x);
         let ends = occupied.map(|ranges| ranges.map(|range| [-(range.start as f64), range.end as f64]));

@@ -1,4 +1,4 @@
-//! Wall-clock seconds by phase, and counts of communication: what `run.json` tells of where a run's time went.
+//! Wall-clock seconds by phase, and counts of communication: what `run.json` reports of where a run's time went.
 
 use crate::traffic::Traffic;
 use std::cell::RefCell;
@@ -30,7 +30,7 @@ impl Timers {
         self.seconds.borrow().clone()
     }
 
-    /// The counter of what this rank tells the others.
+    /// The counter of what this rank sends the others.
     pub fn traffic(&self) -> &Traffic {
         &self.traffic
     }

@@ -1,6 +1,6 @@
-//! What this rank tells the others, by kind: counts, which tell how a run would scale where a clock cannot.
+//! What this rank sends the others, by kind: counts, which tell how a run would scale where a clock cannot.
 //!
-//! What PETSc tells by itself is not among them.
+//! What PETSc reports by itself is not among them.
 
 use std::cell::Cell;
 
@@ -139,7 +139,7 @@ mod tests {
         assert_eq!((counts.sent(), counts.since(&before).sent()), ([5, 740], [3, 580]));
         assert_eq!(counts.since(&before).of(TrafficKind::Reduction).calls, 1);
         let numbers: Vec<f64> = counts.numbers().collect();
-        let told = [[2.0, 4.0, 240.0], [0.0; 3], [0.0; 3], [0.0; 3], [1.0, 0.0, 24.0], [0.0; 3], [1.0, 1.0, 500.0]];
-        assert_eq!(numbers, told.concat());
+        let expected = [[2.0, 4.0, 240.0], [0.0; 3], [0.0; 3], [0.0; 3], [1.0, 0.0, 24.0], [0.0; 3], [1.0, 1.0, 500.0]];
+        assert_eq!(numbers, expected.concat());
     }
 }

@@ -110,7 +110,7 @@ pub struct Case {
     pub renamings: Vec<String>,
     /// What the program chose by itself.
     pub notes: Vec<Choice>,
-    /// The case as it is run: the file's text, or with overrides or a preset the same content, complete, written anew.
+    /// The case as it is run: the file's text, or with overrides or a preset the same content, complete, written again.
     pub text: String,
 }
 

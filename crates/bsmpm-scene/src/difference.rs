@@ -11,7 +11,7 @@ use crate::source::Source;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Keys with which a run may go on changed: they say how far, how finely and how it is told, not what is solved.
+/// Keys with which a run may go on changed: they say how far, how finely and how it is reported, not what is solved.
 const FREE: [&str; 17] = [
     "title",
     "analysis.dt",
@@ -180,21 +180,21 @@ mod tests {
         points_per_cell = 2
     "#;
 
-    fn told(from: &str, to: &str) -> Vec<(String, bool)> {
+    fn reported(from: &str, to: &str) -> Vec<(String, bool)> {
         assert!(CASE.contains(from), "{from}");
         let found = differences(CASE, &CASE.replace(from, to)).unwrap_or_else(|e| panic!("{e:?}"));
         found.iter().map(|difference| (difference.to_string(), difference.may_change)).collect()
     }
 
     #[test]
-    fn the_key_and_both_values_are_told() {
+    fn the_key_and_both_values_are_reported() {
         assert_eq!(
-            told("poisson = 0.3", "poisson = 0.35"),
+            reported("poisson = 0.3", "poisson = 0.35"),
             [("material.soil.poisson was 0.3, and is 0.35".into(), false)]
         );
-        let found = told("[material.soil]", "[material.clay]");
+        let found = reported("[material.soil]", "[material.clay]");
         assert!(found.contains(&("material.soil.young was 5840000.0, and is not given".into(), false)), "{found:?}");
-        assert_eq!(told("cell = 0.1", "cell = 0.05").len(), 1);
+        assert_eq!(reported("cell = 0.1", "cell = 0.05").len(), 1);
     }
 
     #[test]
@@ -214,17 +214,17 @@ mod tests {
 
     #[test]
     fn another_way_to_write_the_same_is_no_difference() {
-        assert_eq!(told("\"5840 kPa\"", "5.84e6"), []);
-        assert_eq!(told("\"1 ms\"", "0.001 # s"), []);
+        assert_eq!(reported("\"5840 kPa\"", "5.84e6"), []);
+        assert_eq!(reported("\"1 ms\"", "0.001 # s"), []);
     }
 
     #[test]
     fn a_run_may_go_on_with_another_end_step_or_tolerance_but_not_with_another_motion() {
         let end = ("end = \"1 s\"", "end = \"2 s\"");
-        assert_eq!(told(end.0, end.1), [("analysis.end was 1.0, and is 2.0".into(), true)]);
-        assert!(told("\"1 ms\"", "\"2 ms\"")[0].1);
-        assert!(told("[grid]", "[output]\nevery = 0.1\n[grid]").iter().all(|(_, may_change)| *may_change));
-        assert!(!told("[grid]", "[output]\nresiduals = true\n[grid]").iter().all(|(_, may_change)| *may_change));
+        assert_eq!(reported(end.0, end.1), [("analysis.end was 1.0, and is 2.0".into(), true)]);
+        assert!(reported("\"1 ms\"", "\"2 ms\"")[0].1);
+        assert!(reported("[grid]", "[output]\nevery = 0.1\n[grid]").iter().all(|(_, may_change)| *may_change));
+        assert!(!reported("[grid]", "[output]\nresiduals = true\n[grid]").iter().all(|(_, may_change)| *may_change));
         let footing = "[footing]\nfrom = [0.0, 0.5]\nto = [0.1, 0.5]\ndisplacement = [0.0, -0.1]\n[grid]";
         let footing = CASE.replace("[grid]", footing);
         let found = differences(&footing, &footing.replace(end.0, end.1)).unwrap();

@@ -1,4 +1,4 @@
-//! One thing that is wrong with a case, told so that its author finds it and knows what to write; and one that the
+//! One thing that is wrong with a case, reported so that its author finds it and knows what to write; and one that the
 //! program chose by itself.
 
 use crate::words::RemovedWord;

@@ -92,8 +92,8 @@ pub struct Estimate {
     /// Ranks that have something to do: at least a thousand unknowns each, and [`Case::most_ranks`] at most.
     pub useful_ranks: u64,
     /// Memory of all ranks together, bytes, their libraries and what each repeats included, where the bodies are at the
-    /// start and as long as `auto` needs no Newton's method. Within .8 to 1.5 of the peaks that were measured on one to
-    /// three ranks; bodies that spread take more.
+    /// start and as long as `auto` needs no Newton's method. Within 0.8 to 1.5 of the peaks that were measured on one
+    /// to three ranks; bodies that spread take more.
     pub bytes: u64,
     /// The same once Newton's method is needed.
     pub bytes_with_newton: u64,

@@ -103,7 +103,7 @@ impl Preset {
 /// that iterations stall.
 const GRADED_POINTS: u64 = 3;
 
-/// Cells across the thinnest body below which a warning is told.
+/// Cells across the thinnest body below which a warning is reported.
 const FEWEST: f64 = 2.0;
 
 /// Of every preset: splines of this order, and where a material could lock this against it.
@@ -163,7 +163,7 @@ fn fill_accuracy(
         None if cells.is_some() || scene.shortest().is_some() => {
             filling.miss("analysis", &["steps", "dt"], scene::STEPS)
         }
-        None => {} // told already
+        None => {} // reported already
     }
     if let Some(why) = scene.locks() {
         filling.put("stabilisation", &["method"], &quoted(METHOD), why);
@@ -226,7 +226,7 @@ impl Completion<'_, '_> {
         put
     }
 
-    /// Tells what the first of these keys of a table would follow from, unless one of them is given.
+    /// Reports what the first of these keys of a table would follow from, unless one of them is given.
     fn miss(&mut self, table: &str, keys: &[&str], basis: &str) {
         let given = |table: &DocumentTable| keys.iter().any(|key| table.get(key).is_some());
         match self.document.get(table) {
@@ -239,7 +239,7 @@ impl Completion<'_, '_> {
         }
     }
 
-    /// Gives the grid cells, unless it has some, tells their sizes, and gives bodies points to suit them.
+    /// Gives the grid cells, unless it has some, reports their sizes, and gives bodies points to suit them.
     fn cells(&mut self, cells: Option<&Cells>, scene: &PresetScene<'_>, preset: &Preset) {
         let mut points = preset.points;
         match cells {

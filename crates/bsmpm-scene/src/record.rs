@@ -149,9 +149,9 @@ impl Context {
                 (None, Presence::Optional | Presence::Later | Presence::Retired) => {}
             }
         }
-        let (mut told, mut missing) = (Vec::new(), Vec::new());
+        let mut reported = ReportedGroups::default();
         for group in table.exclusive {
-            exclusive(group, written, (&record, &mut told), &mut missing, report);
+            exclusive(group, written, &record, &mut reported, report);
         }
         record
     }
@@ -233,26 +233,35 @@ pub(crate) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-/// What is wrong with a group of keys; nothing of two of which it was `told` by another group, nor of a group that has
-/// keys in common with one of which all are `missing`.
+/// What has been reported of the groups of a table.
+#[derive(Default)]
+struct ReportedGroups<'a> {
+    /// keys that are both given
+    pairs: Vec<[&'a str; 2]>,
+    /// keys of groups without any
+    missing: Vec<&'static str>,
+}
+
+/// What is wrong with a group of keys; nothing of two that were reported with another group, nor of a group that has
+/// keys in common with one that is missing.
 fn exclusive<'a>(
     group: &'static Group,
     written: &'a DocumentTable,
-    (record, told): (&Record, &mut Vec<[&'a str; 2]>),
-    missing: &mut Vec<&'static str>,
+    record: &Record,
+    reported: &mut ReportedGroups<'a>,
     report: &mut Report<'_>,
 ) {
     let given: Vec<_> = group.keys.iter().filter_map(|key| written.get(key)).collect();
     if let [first, second, ..] = given[..]
-        && !told.contains(&[&first.key, &second.key])
+        && !reported.pairs.contains(&[&first.key, &second.key])
     {
-        told.push([&first.key, &second.key]);
+        reported.pairs.push([&first.key, &second.key]);
         let message = format!("`{}` is given too; only one of {} may be", first.key, group.keys.join(", "));
         report.error(second.origin, &join(&record.path, &second.key), message);
     }
-    let is_told = group.keys.iter().any(|key| missing.contains(key));
-    if given.is_empty() && group.required && !is_told {
-        missing.extend(group.keys);
+    let is_reported = group.keys.iter().any(|key| reported.missing.contains(key));
+    if given.is_empty() && group.required && !is_reported {
+        reported.missing.extend(group.keys);
         let message = format!("missing: one of {}", group.keys.join(", "));
         report.missing(record.origin, &record.path, group.keys, message, filled_by(group.keys));
     }

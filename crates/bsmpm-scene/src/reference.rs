@@ -17,17 +17,17 @@ pub fn reference() -> String {
          in degrees); a string carries a unit. A table that is absent means that the thing does not exist in the scene.",
     );
     page.units();
-    let mut told: Vec<&Table> = Vec::new();
+    let mut described: Vec<&Table> = Vec::new();
     for table in ROOT.all() {
         // Shapes stand in several tables.
-        if !told.iter().any(|known| std::ptr::eq(*known, table)) {
-            told.push(table);
+        if !described.iter().any(|known| std::ptr::eq(*known, table)) {
+            described.push(table);
             page.table(table);
         }
     }
     page.line("## Rows from a file\n");
     page.paragraph(
-        "Where rows are told, `{ file = \"record.csv\" }` takes them from a text file beside the case: a line for each, \
+        "Where rows are given, `{ file = \"record.csv\" }` takes them from a text file beside the case: a line for each, \
          cells between commas, semicolons, tabs or blanks, `#` before a comment. A heading may give units, as in `t [s], \
          ux [mm]`. With `along = \"x\"` (or `\"y\"`) the file has two columns, a time and a number, and the other \
          component is zero. The rows become part of the case: `run.json` keeps them, and a restart needs no file. `--set` \
@@ -126,7 +126,7 @@ impl Page {
         self.line("## Quantities of a history\n");
         self.paragraph(
             "Words of `quantity` in `[[history]]`, with the unit of the numbers. A quantity of several numbers has a \
-             column for each, whose name has what is told here appended.",
+             column for each, whose name has what is reported here appended.",
         );
         for (word, doc) in Measurement::WORDS.all() {
             let Some(measured) = Measurement::of(word) else { continue };

@@ -1,4 +1,4 @@
-//! What the text of a case tells without all of it being valid: a text of another version of the program, or none,
+//! What the text of a case reports without all of it being valid: a text of another version of the program, or none,
 //! leaves gaps, and no errors.
 
 use crate::case::Support;
@@ -42,7 +42,7 @@ pub struct SketchedHistory {
 }
 
 impl Sketch {
-    /// What `text` tells.
+    /// What `text` reports.
     pub fn of(text: &str) -> Self {
         let source = Source::new("case", text);
         let mut report = Report::new(&source, &[]);
@@ -99,7 +99,7 @@ mod tests {
     "#;
 
     #[test]
-    fn what_is_there_is_told_though_the_case_is_none() {
+    fn what_is_there_is_reported_though_the_case_is_none() {
         assert!(crate::Case::from_text("case", HALF, &[]).is_err());
         let case = Sketch::of(HALF);
         assert_eq!((case.regime, case.stabilisation), (Some(Regime::QuasiStatic), Some(Stabilisation::None)));

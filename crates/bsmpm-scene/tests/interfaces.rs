@@ -27,17 +27,17 @@ fn averages_do_not_mix_materials_of_different_stiffness_and_weigh_different_dens
 }
 
 #[test]
-fn interfaces_beyond_what_was_shown_are_told_of() {
+fn interfaces_beyond_what_was_shown_are_reported() {
     let inside = ["body.0.box.upper=[3, 6.5]", "body.1.box.lower=[0, 6.5]"];
     let soft = "material.heavy={ model = \"tresca\", young = 1e9, poisson = 0.3, cohesion = 1e4, unit_weight = 2e4 }";
-    let told = |changes: &[&str]| {
+    let reports = |changes: &[&str]| {
         let warnings = layers(changes).warnings;
-        warnings.into_iter().filter(|told| told.contains(" meet")).collect::<Vec<_>>()
+        warnings.into_iter().filter(|warning| warning.contains(" meet")).collect::<Vec<_>>()
     };
     // On a grid line anything elastic was shown; with soil that yields, a stiffer body on it up to 1 : 100.
-    assert!(told(&[EQUAL, "material.light.young=1e13"]).is_empty());
-    assert!(told(&[soft, EQUAL, "material.light.young=1e11"]).is_empty());
-    let moving = told(&[soft, EQUAL, "material.light.young=1.1e11"]);
+    assert!(reports(&[EQUAL, "material.light.young=1e13"]).is_empty());
+    assert!(reports(&[soft, EQUAL, "material.light.young=1e11"]).is_empty());
+    let moving = reports(&[soft, EQUAL, "material.light.young=1.1e11"]);
     assert!(moving.len() == 1 && moving[0].contains("1.100e2 times as stiff"), "{moving:?}");
     // Inside cells, by moduli and by densities.
     for (changes, count) in [
@@ -45,9 +45,9 @@ fn interfaces_beyond_what_was_shown_are_told_of() {
         ([EQUAL, "material.light.young=1.2e9"], 0),
         (["title=a", "title=b"], 1),
     ] {
-        let found = told(&[&inside[..], &changes].concat());
+        let found = reports(&[&inside[..], &changes].concat());
         assert!(
-            found.len() == count && found.iter().all(|told| told.contains("inside cells")),
+            found.len() == count && found.iter().all(|warning| warning.contains("inside cells")),
             "{changes:?}: {found:?}"
         );
     }

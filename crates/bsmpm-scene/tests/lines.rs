@@ -88,13 +88,13 @@ fn an_interface_inside_cells_is_warned_of() {
     let sloping = LAYERS
         .replace("box = { lower = [0.0, 0.0], upper = [8.0, 2.0] }", "polygon = [[0, 0], [8, 0], [8, 3], [0, 2]]")
         .replace("box = { lower = [0.0, 2.0], upper = [8.0, 4.0] }", "polygon = [[0, 2], [8, 3], [8, 4], [0, 4]]");
-    assert!(lines(&sloping).2.iter().any(|told| told.contains("meet inside cells")));
+    assert!(lines(&sloping).2.iter().any(|warning| warning.contains("meet inside cells")));
     assert!(lines(&sloping.replace("young = 1e7", "young = 1.2e6")).2.is_empty());
-    // Without automatic lines the same is told of the line that there might be.
+    // Without automatic lines the same is reported of the line that there might be.
     let none = LAYERS.replace("degree = \"quadratic\"", "degree = \"quadratic\"\nc0_lines = \"none\"");
     let (found, _, warnings) = lines(&none);
     assert_eq!(found, [vec![], vec![]]);
-    assert!(warnings.iter().any(|told| told.contains("c0_lines") && told.contains("y = 2")), "{warnings:?}");
+    assert!(warnings.iter().any(|warning| warning.contains("c0_lines") && warning.contains("y = 2")), "{warnings:?}");
 }
 
 #[test]
@@ -110,8 +110,9 @@ fn bodies_of_a_solid_meet_on_planes_of_the_grid_or_are_warned_of() {
             .replace("right = \"roller\"", "right = \"roller\"\n    front = \"roller\"\n    back = \"roller\"");
         let case = case(&text);
         let lines = |axis: usize| case.grid.lines[axis].iter().map(|line| line.breakpoint).collect::<Vec<_>>();
-        let inside = case.warnings.iter().any(|told| {
-            told.contains("soft meet inside cells") || told.contains("and where they meet was not found: if they do")
+        let inside = case.warnings.iter().any(|warning| {
+            warning.contains("soft meet inside cells")
+                || warning.contains("and where they meet was not found: if they do")
         });
         ([0, 1, 2].map(lines), inside)
     };
@@ -152,18 +153,18 @@ fn strips_and_loads_end_on_lines_where_the_surface_goes_on() {
     assert_eq!(lines(&strip.replace("from = [3.0, 4.0]", "from = [0.0, 4.0]")).0, [vec![10], vec![]]);
     let over_all = strip.replace("[3.0, 4.0]", "[0.0, 4.0]").replace("[5.0, 4.0]", "[8.0, 4.0]");
     assert_eq!(lines(&over_all).0, [vec![], vec![]]);
-    let told = |text: &str, says: &str| {
+    let reports = |text: &str, says: &str| {
         let (found, _, warnings) = lines(text);
-        assert!(warnings.iter().any(|told| told.contains(says)), "{says}: {warnings:?}");
+        assert!(warnings.iter().any(|warning| warning.contains(says)), "{says}: {warnings:?}");
         found
     };
     let inside = strip.replace("to = [5.0, 4.0]", "to = [5.2, 4.0]");
-    assert_eq!(told(&inside, "the end at x = 5.2 lies inside a cell"), [vec![6], vec![]]);
+    assert_eq!(reports(&inside, "the end at x = 5.2 lies inside a cell"), [vec![6], vec![]]);
     let narrow = strip.replace("from = [3.0, 4.0]", "from = [4.7, 4.0]").replace("[5.0, 4.0]", "[4.9, 4.0]");
     let errors = Case::from_text("case.toml", &narrow, &[]).expect_err("it is narrower than a cell");
     assert!(errors.iter().any(|e| e.key == "footing.to" && e.message.contains("inside a cell of 0.5 m")), "{errors:?}");
     let sliding = strip.replace("[0.0, -0.1]", "[0.3, -0.1]");
-    assert_eq!(told(&sliding, "moves along itself"), [vec![], vec![]]);
+    assert_eq!(reports(&sliding, "moves along itself"), [vec![], vec![]]);
     let load = "[[traction]]\nfrom = [2.0, 4.0]\nto = [4.0, 4.0]\nstress = [0.0, -1e3]\nramp = 1.0\n";
     assert_eq!(lines(&format!("{alike}{load}")).0, [vec![4, 8], vec![]]);
 }
@@ -186,24 +187,25 @@ fn knots_may_be_repeated_by_hand() {
 }
 
 #[test]
-fn where_water_fills_ground_that_moves_through_lines_they_are_told_of() {
+fn where_water_fills_ground_that_moves_through_lines_they_are_reported() {
     let wet = LAYERS
         .replace("young = 1e7", "young = 1e6")
         .replace("type = \"quasi-static\"", "type = \"consolidation\"\n    end = 1.0")
         .replace("density = 2000.0", "density = 2000.0\n    drainage = \"undrained\"\n    porosity = 0.4");
-    let loses = |text: &str| lines(text).2.iter().any(|told| told.contains("it loses volume"));
+    let loses = |text: &str| lines(text).2.iter().any(|warning| warning.contains("it loses volume"));
     let strip = format!("{wet}{STRIP}");
     assert_eq!(lines(&strip).0, [vec![6, 10], vec![]]);
-    assert!(!loses(&strip), ".2 of a cell");
-    let rubs =
-        |text: &str| lines(text).2.iter().any(|told| told.contains("material.soft has friction and does not drain"));
+    assert!(!loses(&strip), "0.2 of a cell");
+    let has_friction = |text: &str| {
+        lines(text).2.iter().any(|warning| warning.contains("material.soft has friction and does not drain"))
+    };
     let law = ["model = \"tresca\"", "cohesion = 1e3"];
     let friction = |angle: u32| {
         let mohr = strip.replace(law[0], "model = \"mohr-coulomb\"");
         mohr.replace(law[1], &format!("cohesion = 1e3\n    friction_angle = {angle}"))
     };
-    assert!(rubs(&friction(25)) && !rubs(&friction(0)) && !rubs(&strip));
-    assert!(!rubs(&friction(25).replace(STRIP, "")), "no line");
+    assert!(has_friction(&friction(25)) && !has_friction(&friction(0)) && !has_friction(&strip));
+    assert!(!has_friction(&friction(25).replace(STRIP, "")), "no line");
     let deeper = strip.replace("[0.0, -0.1]", "[0.0, -0.4]");
     assert!(loses(&deeper));
     let by_hand = "knots = { x = [0, 2, 2, 4, 6, 8], y = [0, 1, 2, 3, 4, 5, 6] }";
@@ -211,7 +213,7 @@ fn where_water_fills_ground_that_moves_through_lines_they_are_told_of() {
     let load = "[[traction]]\nfrom = [2.0, 4.0]\nto = [4.0, 4.0]\nstress = [0.0, -1e3]\nramp = 1.0\n";
     let (found, _, warnings) = lines(&format!("{wet}{load}"));
     assert_eq!(found, [vec![], vec![]]);
-    assert!(warnings.iter().any(|told| told.contains("where water flows, without a line there")), "{warnings:?}");
+    assert!(warnings.iter().any(|warning| warning.contains("where water flows, without a line there")), "{warnings:?}");
 }
 
 /// Where one of two soils lets much less water through, and meets the other inside a cell, or none at all.
@@ -229,15 +231,15 @@ fn what_is_tight_beside_what_is_not_is_warned_of() {
              [boundary]\nbottom = \"fixed\"\n[[drain]]\nname = \"base\"\nface = \"bottom\"\n"
         )
     };
-    let told = |height: f64, tight: &str| {
+    let reports = |height: f64, tight: &str| {
         let (_, _, warnings) = lines(&layers(height, tight));
         warnings.into_iter().find(|warning| warning.contains("material.sand and material.clay"))
     };
     let coupled = |permeability: f64| format!("drainage = \"coupled\"\npermeability = {permeability:e}");
-    assert!(told(2.2, &coupled(1e-7)).is_some_and(|told| told.contains("1.000e2 times as permeable")));
-    assert_eq!(told(2.0, &coupled(1e-7)), None);
-    assert_eq!(told(2.2, &coupled(5e-6)), None);
-    assert!(told(2.0, "drainage = \"undrained\"").is_some_and(|told| told.contains("in one of them only")));
+    assert!(reports(2.2, &coupled(1e-7)).is_some_and(|warning| warning.contains("1.000e2 times as permeable")));
+    assert_eq!(reports(2.0, &coupled(1e-7)), None);
+    assert_eq!(reports(2.2, &coupled(5e-6)), None);
+    assert!(reports(2.0, "drainage = \"undrained\"").is_some_and(|warning| warning.contains("in one of them only")));
 }
 
 /// A line where an edge that soil lies at ends and the surface goes on, of a body that stays over it; inside a cell a
@@ -259,8 +261,9 @@ fn rigid_bodies_have_lines_at_the_corners_that_stay() {
     assert_eq!(lines(&punch(-1.0, down)).0, [vec![10], vec![]]);
     let (found, _, warnings) = lines(&punch(3.2, down));
     assert_eq!(found, [vec![10], vec![]]);
-    let told = |warnings: &[String]| warnings.iter().any(|warning| warning.contains("a corner at x = 3.2 lies inside"));
-    assert!(told(&warnings), "{warnings:?}");
+    let reports =
+        |warnings: &[String]| warnings.iter().any(|warning| warning.contains("a corner at x = 3.2 lies inside"));
+    assert!(reports(&warnings), "{warnings:?}");
     // A wedge has no edge there, and is widest there all the same; above the ground it parts nothing.
     let wedge = |top: f64| {
         let low = top - 1.0;
@@ -274,7 +277,7 @@ fn rigid_bodies_have_lines_at_the_corners_that_stay() {
     assert_eq!(wedge(5.0).0, [vec![], vec![]]);
     for moved in ["displacement = [0.1, 0.0]", "free = [\"x\", \"y\", \"rotation\"]\nforce = [0, -10]"] {
         let (found, _, warnings) = lines(&punch(3.2, moved));
-        assert!(found == [vec![], vec![]] && !told(&warnings), "{found:?} {warnings:?}");
+        assert!(found == [vec![], vec![]] && !reports(&warnings), "{found:?} {warnings:?}");
     }
 }
 
@@ -299,8 +302,8 @@ fn rigid_boxes_of_a_solid_have_lines_at_the_edges_that_stay() {
         let case = case(&format!("{text}[[rigid]]\nname = \"punch\"\n{shape}\n{more}\n"));
         let breakpoints = |axis: usize| case.grid.lines[axis].iter().map(|line| line.breakpoint).collect::<Vec<_>>();
         let notes = case.notes.iter().filter(|note| note.key == "grid.c0_lines" && note.value.contains('='));
-        let told = notes.map(|note| note.reason.clone());
-        ([0, 1, 2].map(breakpoints), told.collect::<Vec<_>>(), case.warnings)
+        let reported = notes.map(|note| note.reason.clone());
+        ([0, 1, 2].map(breakpoints), reported.collect::<Vec<_>>(), case.warnings)
     };
     let at = |x: f64, y: f64, z: f64| {
         format!("box = {{ lower = [{x}, {y}, {z}], upper = [{}, {}, {}] }}", x + 2.0, y + 2.0, z + 2.0)
@@ -309,7 +312,7 @@ fn rigid_boxes_of_a_solid_have_lines_at_the_edges_that_stay() {
     let (found, notes, warnings) = of(&at(3.0, 1.0, 4.0), down);
     assert_eq!(found, [vec![6, 10], vec![2, 6], vec![]]);
     assert!(notes[0].contains("an edge of rigid `punch`"), "{notes:?}");
-    assert!(!warnings.iter().any(|told| told.contains("punch")), "{warnings:?}");
+    assert!(!warnings.iter().any(|warning| warning.contains("punch")), "{warnings:?}");
     // A quarter of it in the corner of two planes of symmetry, half of it at one; above the ground it parts nothing.
     assert_eq!(of(&at(-1.0, -1.0, 4.0), down).0, [vec![2], vec![2], vec![]]);
     assert_eq!(of(&at(3.0, 3.0, 4.0), down).0, [vec![6, 10], vec![6], vec![]]);
@@ -322,14 +325,14 @@ fn rigid_boxes_of_a_solid_have_lines_at_the_edges_that_stay() {
     let (found, _, warnings) = of(&at(3.2, 1.0, 4.0), down);
     assert_eq!(found, [vec![], vec![2, 6], vec![]]);
     assert!(
-        warnings.iter().any(|told| told.contains("`punch`: an edge at x = 3.2 lies inside a cell")),
+        warnings.iter().any(|warning| warning.contains("`punch`: an edge at x = 3.2 lies inside a cell")),
         "{warnings:?}"
     );
     let round = |motion: &str| {
         let shape = "revolve = { about = [4, 2], polygon = [[0, 4], [1, 4], [1, 6], [0, 6]] }";
         let (found, _, warnings) = of(shape, motion);
         assert_eq!(found, [vec![], vec![], vec![]]);
-        warnings.iter().any(|told| told.contains("rigid `punch`: its rim is round"))
+        warnings.iter().any(|warning| warning.contains("rigid `punch`: its rim is round"))
     };
     assert!(round(down) && !round("displacement = [0.1, 0, 0]"));
 }

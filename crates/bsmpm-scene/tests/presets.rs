@@ -32,7 +32,7 @@ fn every_word_fills_in_another_discretisation_of_the_same_scene() {
         assert!(draft.3 >= standard.3 && standard.3 > reference.3);
         assert!(draft.4 > standard.4 && standard.4 > reference.4);
     }
-    // The shorter side of the column is .1 m high, that of the slope 10 m, and the strip is half of one 2 m wide.
+    // The shorter side of the column is 0.1 m high, that of the slope 10 m, and the strip is half of one 2 m wide.
     let cells = |text, word| of(text, word).0;
     assert_eq!([cells(COLUMN, "draft"), cells(COLUMN, "standard"), cells(COLUMN, "reference")], [55, 110, 220]);
     assert_eq!([cells(SLOPE, "draft"), cells(SLOPE, "standard"), cells(SLOPE, "reference")], [40, 80, 160]);
@@ -58,7 +58,7 @@ fn steps_follow_the_shear_wave_the_motion_or_the_least_number() {
     assert!((column.analysis.dt / graded.analysis.dt - 2.0_f64.sqrt()).abs() < 0.01);
     let steps = |case: &Case| (case.analysis.end / case.analysis.dt).round();
     assert_eq!(steps(&valid(SLOPE, &["accuracy=draft"])), 10.0);
-    // 2 m down in tenths of cells of .25 m; the fastest part of a path counts, up to the end.
+    // 2 m down in tenths of cells of 0.25 m; the fastest part of a path counts, up to the end.
     assert_eq!(steps(&valid(FOOTING, &["accuracy=draft"])), 80.0);
     let path = "footing.path=[[0.5, 0.0, -2.0], [1.0, 0.0, 0.0]]";
     assert_eq!(steps(&valid(FOOTING, &["accuracy=draft", path])), 160.0);
@@ -86,7 +86,7 @@ fn steps_follow_the_shear_wave_the_motion_or_the_least_number() {
 }
 
 #[test]
-fn every_key_given_by_hand_wins_and_only_the_others_are_told_as_chosen() {
+fn every_key_given_by_hand_wins_and_only_the_others_are_reported_as_chosen() {
     let by_hand = [
         ("grid.cell", "\"25 mm\""),
         ("grid.degree", "\"cubic\""),
@@ -132,7 +132,7 @@ fn the_effective_text_is_complete_and_stays_the_same() {
 
 #[test]
 fn cells_fit_between_faces_that_stay() {
-    // .55 m between rollers, where 27.5 cells of 20 mm would be.
+    // 0.55 m between rollers, where 27.5 cells of 20 mm would be.
     let case = valid(COLUMN, &["body.0.box.upper=[0.2, 0.333]", "grid.upper=[0.55, 0.4]", "accuracy=draft"]);
     let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
     assert_eq!((x.cells(), y.shortest()), (28, 0.02));
@@ -144,12 +144,12 @@ fn cells_fit_between_faces_that_stay() {
 }
 
 #[test]
-fn what_no_word_knows_is_told() {
+fn what_no_word_knows_is_reported() {
     let disc = "rigid=[{ name = \"disc\", circle = { centre = [0.4, 0.1], radius = 0.02 }";
     let of = |further: &str| valid(COLUMN, &[&format!("{disc}{further} }}]")]);
-    let told =
+    let reports =
         |case: &Case| case.warnings.iter().any(|warning| warning.contains("no way of rigid bodies that are free"));
-    assert!(told(&of(", free = [\"x\"], mass = 1.0")) && !told(&of("")));
+    assert!(reports(&of(", free = [\"x\"], mass = 1.0")) && !reports(&of("")));
 }
 
 #[test]
@@ -176,22 +176,22 @@ fn elastic_soil_that_does_not_lock_gets_no_stabilisation() {
     assert_eq!((elastic(0.3), elastic(0.49)), (Stabilisation::None, Stabilisation::ConsistentFBar));
 }
 
-/// What a word cannot choose it tells, with what that would follow from; what is given needs no choice.
+/// What a word cannot choose it reports, with what that would follow from; what is given needs no choice.
 #[test]
-fn what_cannot_be_chosen_is_told_at_the_word() {
-    let told = |text: &str, overrides: &[&str]| {
+fn what_cannot_be_chosen_is_reported_at_the_word() {
+    let reports = |text: &str, overrides: &[&str]| {
         let errors = read(text, overrides).unwrap_err();
         let own = errors.into_iter().filter(|error| error.key == "accuracy");
         own.map(|error| error.message).collect::<Vec<String>>()
     };
     let weightless = COLUMN.replace("unit_weight    = \"20.4 kN/m3\"\n", "");
     assert_ne!(weightless, COLUMN);
-    let [steps] = &told(&weightless, &[])[..] else { panic!("one error") };
+    let [steps] = &reports(&weightless, &[])[..] else { panic!("one error") };
     assert!(steps.contains("cannot choose analysis.steps") && steps.contains("density"), "{steps}");
-    assert_eq!(told(&weightless, &["analysis.dt=1e-3"]), [""; 0]);
+    assert_eq!(reports(&weightless, &["analysis.dt=1e-3"]), [""; 0]);
     let bodiless = COLUMN.replace("box = { lower = [0.0, 0.0], upper = [0.2, 0.1] }\n", "");
     assert_ne!(bodiless, COLUMN);
-    let [cells] = &told(&bodiless, &[])[..] else { panic!("one error") };
+    let [cells] = &reports(&bodiless, &[])[..] else { panic!("one error") };
     assert!(cells.contains("cannot choose grid.cell") && cells.contains("the size of the bodies"), "{cells}");
 }
 
@@ -251,9 +251,9 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
         assert!(is_fine(y, [8.0 - reach, 10.0], edge) && is_fine(y, [10.0, 10.0 + reach], edge), "{y:?}");
         assert!(x.longest() > 2.5 * edge && y.longest() > 2.5 * edge);
         assert!(case.warnings.is_empty(), "{:?}", case.warnings);
-        // Sizes, places and reasons are told.
-        let told: Vec<_> = case.notes.iter().filter(|note| note.key == "grid.knots").collect();
-        let [all, zone, rest] = &told[..] else { panic!("{told:?}") };
+        // Sizes, places and reasons are reported.
+        let reported: Vec<_> = case.notes.iter().filter(|note| note.key == "grid.knots").collect();
+        let [all, zone, rest] = &reported[..] else { panic!("{reported:?}") };
         assert!(all.reason.contains("across the 10 m of the bodies") && all.reason.contains(&growth.to_string()));
         assert!(zone.value.contains(&format!("x = 0 to {}, y = {} to {}", 1.0 + reach, 8.0 - reach, 10.0 + reach)));
         assert!(zone.reason.contains("the width of footing, 2 m, 1 m cut at a roller"), "{}", zone.reason);
@@ -322,11 +322,11 @@ fn every_strip_and_load_has_small_cells_of_its_own() {
     assert!(is_fine(x, [0.0, 1.5], 0.125) && is_fine(x, [6.0, 6.5], 0.03125), "{x:?}");
     assert!(is_fine(y, [9.875, 10.0], 0.03125), "{y:?}");
     assert_sound(&case, [[0.0, 0.0], [10.0, 12.0]], 0.55, 1.5);
-    let told = |case: &Case| case.notes.iter().filter(|note| note.key == "grid.knots").count();
-    assert_eq!(told(&case), 4);
+    let reports = |case: &Case| case.notes.iter().filter(|note| note.key == "grid.knots").count();
+    assert_eq!(reports(&case), 4);
     // A strip between two others' rollers is no half, and a wide one asks for no smaller cells than the bodies do.
     let wide = valid(FOOTING, &["footing.to=[10.0, 10.0]"]);
-    assert_eq!((told(&wide), wide.grid.axes[0].cells()), (0, 20));
+    assert_eq!((reports(&wide), wide.grid.axes[0].cells()), (0, 20));
     let whole = valid(FOOTING, &["footing.from=[4.0, 10.0]", "footing.to=[6.0, 10.0]"]);
     assert!(is_fine(&whole.grid.axes[0], [3.5, 6.5], 0.125), "{:?}", whole.grid.axes[0]);
     // A wall beside the soil, and its way until the end.
@@ -336,12 +336,12 @@ fn every_strip_and_load_has_small_cells_of_its_own() {
     assert!(is_fine(&pushed.grid.axes[1], [7.5, 8.0], 0.125), "{:?}", pushed.grid.axes[1]);
     // By hand, cells stay as they are.
     let by_hand = valid(FOOTING, &["grid.cell=0.5"]);
-    assert_eq!((told(&by_hand), edges(&by_hand.grid.axes[0])), (0, vec![0.5; 20]));
+    assert_eq!((reports(&by_hand), edges(&by_hand.grid.axes[0])), (0, vec![0.5; 20]));
 }
 
 /// So many breakpoints are the author's to ask for.
 #[test]
-fn a_strip_too_small_for_its_grid_is_told() {
+fn a_strip_too_small_for_its_grid_is_reported() {
     let tiny = ["footing.from=[4.0, 10.0]", "footing.to=[4.00001, 10.0]"];
     let errors = read(FOOTING, &tiny).unwrap_err();
     assert!(errors.iter().any(|error| error.message.contains("1e5 along an axis at most")), "{errors:?}");
@@ -359,9 +359,9 @@ fn cells_are_moved_to_where_strips_end_and_materials_meet() {
     assert!(cells.iter().all(|cell| (0.5..=1.5).contains(cell)), "{cells:?}");
     assert_eq!(moved.grid.lines[0].len(), 2);
     assert!(moved.warnings.is_empty(), "{:?}", moved.warnings);
-    // By hand, nothing is moved, and it is told.
+    // By hand, nothing is moved, and it is reported.
     let by_hand = valid(FOOTING, &["accuracy=draft", aside, "footing.to=[9.3, 5.0]", "grid.cell=1.0"]);
-    assert!(by_hand.warnings.iter().any(|told| told.contains("lies inside a cell")), "{:?}", by_hand.warnings);
+    assert!(by_hand.warnings.iter().any(|warning| warning.contains("lies inside a cell")), "{:?}", by_hand.warnings);
 }
 
 /// Softening goes by the edge of equal squares: a preset neither grades its cells nor makes them oblong.
@@ -375,7 +375,7 @@ fn cells_of_what_softens_in_bands_of_a_given_width_are_equal_squares() {
         )
     };
     let oblong = |case: &Case| case.grid.axes[0].longest().max(case.grid.axes[1].longest()) / case.grid.shortest();
-    // Whole along both axes: 10 m and 4.3 m in 23 and 10 cells would be .4348 by .43 m.
+    // Whole along both axes: 10 m and 4.3 m in 23 and 10 cells would be 0.4348 by 0.43 m.
     let flat = ["accuracy=draft", "body.0.box.upper=[10.0, 4.3]", "grid.upper=[10.0, 4.3]", "boundary.top=roller"];
     assert!(oblong(&valid(COLUMN, &flat)) > 1.01);
     let case = valid(COLUMN, &[&flat[..], &[&soft("rods")]].concat());

@@ -181,12 +181,12 @@ fn a_polygon_along_the_cells_is_a_box() {
 fn walls_thinner_than_points_lie_apart_are_warned_of() {
     let warned = |thick: f64| {
         let wall = format!("polygon = [[2.13, 1], [{}, 1], [{}, 9], [6.13, 9]]", 2.13 + thick, 6.13 + thick);
-        case(METRES, &[&wall], 2).warnings.iter().any(|told| told.contains("where one point stands for all"))
+        case(METRES, &[&wall], 2).warnings.iter().any(|warning| warning.contains("where one point stands for all"))
     };
     assert!(warned(0.05) && !warned(1.0));
     let warned = |thick: f64| {
         let wall = format!("box = {{ lower = [2.13, 1], upper = [{}, 9] }}", 2.13 + thick);
-        case(METRES, &[&wall], 2).warnings.iter().any(|told| told.contains("along x it is"))
+        case(METRES, &[&wall], 2).warnings.iter().any(|warning| warning.contains("along x it is"))
     };
     assert!(warned(0.45) && !warned(0.5));
 }
@@ -275,7 +275,7 @@ fn a_cell_without_a_place_inside_has_one_point() {
 
 #[test]
 fn the_one_point_of_a_cap_is_its_centroid() {
-    // What a circle has above y = 12 where no place of the lattice is: chord 2 m, height .2 m.
+    // What a circle has above y = 12 where no place of the lattice is: chord 2 m, height 0.2 m.
     let radius: f64 = (1.0 + 0.2 * 0.2) / (2.0 * 0.2);
     let circle = format!("circle = {{ centre = [12.5, {:?}], radius = {radius:?} }}", 12.2 - radius);
     let grid = "lower = [0, 0]\nupper = [40, 20]\ncell = [5.0, 4.0]";

@@ -24,22 +24,22 @@ fn every_shipped_case_is_valid() {
                 folders.push(path);
             } else if path.extension().is_some_and(|extension| extension == "toml") && !path.ends_with("matrix.toml") {
                 let case = read(&path);
-                // The ground of the faults does without C0 lines on purpose, and is told so; so is the study of
+                // The ground of the faults does without C0 lines on purpose, and is reported; so is the study of
                 // densities. Where water flows there are none at the ends of loads, nor below fill. What a column that
                 // is let go holds of its own water's weight, its first step has at once. Clay of which a level is drawn
                 // down stays full.
-                let on_purpose = |told: &String| {
+                let on_purpose = |reported: &String| {
                     let without =
                         ["mini_footing", "embankment_consolidation", "embankment_lifts", "undrained_strip"].map(Some);
                     let line = "undrained_footing.toml"; // the study of friction beside one
                     without.contains(&path.file_stem().and_then(|stem| stem.to_str()))
-                        && told.starts_with("grid.c0_lines:")
-                        || path.ends_with("two_densities.toml") && told.contains("2.000 times as dense")
-                        || path.ends_with(line) && told.contains("has friction and does not drain")
-                        || path.ends_with("lid_square.toml") && told.contains("meets left, which is fixed") // its shear
+                        && reported.starts_with("grid.c0_lines:")
+                        || path.ends_with("two_densities.toml") && reported.contains("2.000 times as dense")
+                        || path.ends_with(line) && reported.contains("has friction and does not drain")
+                        || path.ends_with("lid_square.toml") && reported.contains("meets left, which is fixed") // its shear
                         || ["rapid_drawdown.toml", "saturated_slide.toml"].iter().any(|name| path.ends_with(name))
-                            && told.contains("above the water table")
-                        || path.ends_with("saturated_collapse.toml") && told.starts_with("water: there is none that is")
+                            && reported.contains("above the water table")
+                        || path.ends_with("saturated_collapse.toml") && reported.starts_with("water: there is none that is")
                 };
                 let is_slip = |told: &String| told.starts_with("W01");
                 assert!(!case.warnings.iter().any(is_slip), "{}: {:?}", path.display(), case.warnings);
@@ -72,7 +72,7 @@ fn ranks_of_a_solid_are_not_bounded_by_its_columns_along_x() {
     assert!(useful > 57, "{useful} of use");
 }
 
-/// Peaks of resident memory (bytes), summed over the ranks, as `run.json` told them after two steps: shipped
+/// Peaks of resident memory (bytes), summed over the ranks, as `run.json` reported them after two steps: shipped
 /// cases, most with other cells, points and methods, so that each part of the estimate is the largest somewhere.
 const MEASURED: &[(&str, &[&str], usize, f64)] = &[
     ("short/strip_footing", &[], 1, 54.2e6),
@@ -297,8 +297,8 @@ fn the_linear_solver_of_a_solid_is_taken_by_size() {
     {
         let overrides: Vec<String> = set.iter().map(ToString::to_string).collect();
         let notes = Case::from_bytes("round_column", &text, &overrides).unwrap().notes;
-        let told: Vec<_> = notes.iter().filter(|note| note.key.starts_with("solver.linear")).collect();
-        assert!(matches!(told[..], [note] if note.value == "direct" && note.reason.contains(why)), "{told:?}");
+        let reported: Vec<_> = notes.iter().filter(|note| note.key.starts_with("solver.linear")).collect();
+        assert!(matches!(reported[..], [note] if note.value == "direct" && note.reason.contains(why)), "{reported:?}");
     }
     let many = "grid.cell=0.025";
     assert_eq!(on(1, &[many]), found("gamg", 2));
@@ -308,7 +308,7 @@ fn the_linear_solver_of_a_solid_is_taken_by_size() {
     let set = [many, "material.sand.poisson=0.49"];
     assert_eq!((on(1, &set).0, on(2, &set).0), ("spline-multigrid".to_owned(), "cholesky".to_owned()));
     let case = Case::from_bytes("round_column", &text, &set.map(str::to_owned)).unwrap();
-    let warned = |ranks| case.warnings_on(ranks).iter().any(|told| told.contains("a factor of up to"));
+    let warned = |ranks| case.warnings_on(ranks).iter().any(|warning| warning.contains("a factor of up to"));
     assert!(!warned(1) && warned(2));
     let named = [many, set[1], "solver.linear=\"direct\""].map(str::to_owned);
     let named = Case::from_bytes("round_column", &text, &named).unwrap();

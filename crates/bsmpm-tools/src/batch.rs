@@ -33,9 +33,9 @@ pub(crate) struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// What the runs gave, in the order of the orders; `told` gets each as soon as it is there.
-    pub fn run(&self, orders: &[RunOrder], ranks: usize, told: impl FnMut(usize, &Outcome)) -> Vec<Outcome> {
-        self.with(orders, ranks, |order| self.outcome(order), told)
+    /// What the runs gave, in the order of the orders; `report` gets each as soon as it is there.
+    pub fn run(&self, orders: &[RunOrder], ranks: usize, report: impl FnMut(usize, &Outcome)) -> Vec<Outcome> {
+        self.with(orders, ranks, |order| self.outcome(order), report)
     }
 
     /// The same with something else in the place of each run.
@@ -44,10 +44,10 @@ impl Batch<'_> {
         orders: &[RunOrder],
         ranks: usize,
         made: impl Fn(&RunOrder) -> Outcome + Sync,
-        told: impl FnMut(usize, &Outcome),
+        report: impl FnMut(usize, &Outcome),
     ) -> Vec<Outcome> {
         let loads: Vec<PoolLoad> = orders.iter().map(|order| order.load(ranks)).collect();
-        pool::all(&loads, self.limits, |index| made(&orders[index]), told)
+        pool::all(&loads, self.limits, |index| made(&orders[index]), report)
     }
 
     /// Where a run is written.
@@ -81,7 +81,8 @@ impl Batch<'_> {
     }
 }
 
-/// Bytes that runs side by side may take together: what is asked for, or what this machine has free, if it can be told.
+/// Bytes that runs side by side may take together: what is asked for, or what this machine has free, if it can be
+/// determined.
 fn memory(asked: Option<u64>) -> u64 {
     let free = || {
         let text = fs::read_to_string("/proc/meminfo").ok()?;

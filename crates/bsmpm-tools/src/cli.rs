@@ -143,12 +143,13 @@ mod tests {
         for mut command in super::Cli::command().get_subcommands().cloned() {
             let help = command.render_long_help().to_string();
             let Some((_, rest)) = help.split_once("Exit codes: ") else { continue };
-            let told = rest.split("\n\n").next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
-            for part in told.split("; ") {
+            let report = rest.split("\n\n").next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
+            for part in report.split("; ") {
                 let numbers = part.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse::<u8>().ok());
                 assert!(numbers.clone().all(|code| ALL.contains(&code)), "{part}");
-                let is_told = WORDS.iter().filter(|(words, _)| part.contains(words));
-                is_told.for_each(|(words, code)| assert_eq!(numbers.clone().next(), Some(*code), "{words}: {part}"));
+                let is_reported = WORDS.iter().filter(|(words, _)| part.contains(words));
+                is_reported
+                    .for_each(|(words, code)| assert_eq!(numbers.clone().next(), Some(*code), "{words}: {part}"));
             }
             seen += 1;
         }

@@ -52,7 +52,7 @@ pub struct CompareArguments {
     /// Text above the picture [default: the title of the cases, if they share one]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
-    /// Name of a run, once for every DIR [default: its stabilisation where that tells the runs apart, else DIR]
+    /// Name of a run, once for every DIR [default: its stabilisation where that distinguishes the runs, else DIR]
     #[arg(long = "label", value_name = "NAME")]
     pub labels: Vec<String>,
     /// A level across the picture; repeatable

@@ -57,13 +57,13 @@ pub struct ElementArguments {
     pub set: Vec<String>,
 }
 
-/// Computes the tests and writes their tables and pictures; returns a table of all of them and the files. `told` gets
+/// Computes the tests and writes their tables and pictures; returns a table of all of them and the files. `report` gets
 /// what is doubtful, and why a test ended early.
 ///
 /// # Errors
 /// [`Error::Missing`] and [`Error::BadCase`] before anything is written, [`Error::Usage`] for names of no test;
 /// [`Error::Element`] after all files were written, where a test did not come to its end.
-pub fn run(arguments: &ElementArguments, told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+pub fn run(arguments: &ElementArguments, report: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let path = &arguments.case;
     let mut set = arguments.set.clone();
     set.extend(arguments.material.iter().map(|name| format!("element.*.material={name:?}")));
@@ -83,7 +83,7 @@ pub fn run(arguments: &ElementArguments, told: impl FnMut(&str)) -> Result<(Stri
     if failed.is_empty() {
         return Ok((table(&courses), files));
     }
-    table(&courses).lines().for_each(told);
+    table(&courses).lines().for_each(report);
     Err(Error::Element { failed })
 }
 
@@ -92,7 +92,7 @@ fn chosen(case: &Case, arguments: &ElementArguments) -> Result<Vec<StressPath>, 
     let known: Vec<&str> = case.elements.iter().map(|test| test.name.as_str()).collect();
     let path = arguments.case.display();
     if known.is_empty() {
-        let reason = format!("{path} has no [element.NAME]: no test is told; see `bsmpm element --help`");
+        let reason = format!("{path} has no [element.NAME]: no test is reported; see `bsmpm element --help`");
         return Err(Error::Usage { reason });
     }
     if let Some(name) = arguments.tests.iter().find(|name| !known.contains(&name.as_str())) {

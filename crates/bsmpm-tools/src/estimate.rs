@@ -74,11 +74,11 @@ pub struct EstimateArguments {
     pub command: Vec<String>,
 }
 
-/// Estimates; `told` gets a line for every probe. Returns what is to be printed.
+/// Estimates; `announce` gets a line for every probe. Returns what is to be printed.
 ///
 /// # Errors
 /// Those of the command line and the case before anything runs; [`Error::Run`] if the first steps fail; those of files.
-pub fn run(arguments: &EstimateArguments, mut told: impl FnMut(&str)) -> Result<String, Error> {
+pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Result<String, Error> {
     if !(arguments.budget.is_finite() && arguments.budget > 0.0) {
         return Err(Error::Usage { reason: format!("--budget {}: expected some seconds", arguments.budget) });
     }
@@ -95,12 +95,12 @@ pub fn run(arguments: &EstimateArguments, mut told: impl FnMut(&str)) -> Result<
     } else {
         let (ranks, command) = (arguments.probed(ranks), &arguments.command()[..]);
         let plan = probe::ProbePlan { case: &case, ranks, command, may_be_whole: !arguments.no_whole };
-        probe::estimate(&plan, &guess, deadline(arguments.budget), &mut told)?
+        probe::estimate(&plan, &guess, deadline(arguments.budget), &mut announce)?
     };
     let mut report = EstimateReport::of(&arguments.case, &case, ranks, (speed, &found));
     if let Some(actual) = actual {
         if actual.text != case.text {
-            told("warning: the run is of another text of the case, or of other overrides");
+            announce("warning: the run is of another text of the case, or of other overrides");
         }
         report.compare(&actual);
     }

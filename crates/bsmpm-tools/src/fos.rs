@@ -5,7 +5,7 @@
 //!
 //! Loading soil is path dependent, so every trial carries its load from zero, or goes on from the end of a stage that
 //! was made with the whole strength: a state of another strength is no state on the way. What could be saved that way
-//! is taken from trials that run at the same time instead: `guess` tells which ones the search may ask for next, `jobs`
+//! is taken from trials that run at the same time instead: `guess` says which ones the search may ask for next, `jobs`
 //! runs them. They shorten the search and change nothing else in it.
 
 use std::fs;
@@ -58,7 +58,7 @@ same manner. Displacements are compared with those of the elastic body under the
 of vertical gravity.
 
 The factor belongs to the body as it is drawn, and does not depend on its stiffness: where the load would strain it by more
-than 0.2 %, the trials' Young's moduli are multiplied until it does not, and displacements told as if they had not been.
+than 0.2 %, the trials' Young's moduli are multiplied until it does not, and displacements reported as if they had not been.
 Loads that act at once grow over the whole run, and a stress at the start ([initial]) is left out. The notes say so.
 
 With --stage every trial goes on from the state at the end of that stage instead, which is found once, with the whole
@@ -141,13 +141,13 @@ pub(crate) struct FoundFactor {
     pub kept: bool,
 }
 
-/// Searches; `told` gets a line for every trial as soon as it is there. Returns the table and the written pictures.
+/// Searches; `report` gets a line for every trial as soon as it is there. Returns the table and the written pictures.
 ///
 /// # Errors
 /// Those of the command line and the case before anything runs; [`Error::NoStableState`]; [`Error::Run`] for a trial
 /// that broke; the errors of files.
-pub fn run(arguments: &FosArguments, told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
-    let (report, subject) = found(arguments, told)?;
+pub fn run(arguments: &FosArguments, report: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+    let (report, subject) = found(arguments, report)?;
     let output = arguments.directory();
     let pictures = picture::draw(&report, &subject, &output)?;
     Ok((report.text(), pictures.iter().map(|name| output.join(name)).collect()))
@@ -167,7 +167,7 @@ pub(crate) fn factor(arguments: &FosArguments) -> Result<FoundFactor, Error> {
 }
 
 /// The search, written as tables.
-fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosReport, Subject), Error> {
+fn found(arguments: &FosArguments, mut report: impl FnMut(&str)) -> Result<(FosReport, Subject), Error> {
     let start = Instant::now();
     let command = command::words(&arguments.command, 1);
     let (plan, jobs) = (arguments.plan()?, command::jobs(arguments.jobs, &command)?);
@@ -193,9 +193,9 @@ fn found(arguments: &FosArguments, mut told: impl FnMut(&str)) -> Result<(FosRep
     }
     let force = arguments.force;
     let mut trials = Trials { solver, subject: &subject, output: &output, force, stage: None, pushed: None };
-    trials.stage = trials.stage(&mut told)?;
+    trials.stage = trials.stage(&mut report)?;
     trials.pushed = trials.pushed()?;
-    let (curve, made) = jobs::find(plan, jobs, &trials, |trial| told(&line(trial, plan.sought)))?;
+    let (curve, made) = jobs::find(plan, jobs, &trials, |trial| report(&line(trial, plan.sought)))?;
     let mut report = FosReport::of(&subject, plan, &command, &curve, made);
     report.jobs = jobs;
     report.seconds = start.elapsed().as_secs_f64();

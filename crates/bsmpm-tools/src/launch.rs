@@ -49,7 +49,8 @@ pub(crate) struct LaunchTask<'a> {
     /// Further arguments of bsmpm-par.
     pub further: Vec<String>,
     pub directory: PathBuf,
-    /// Everything that the run is made from, as it stands now; none where a part cannot be told, and the run is made.
+    /// Everything that the run is made from, as it stands now; none where a part cannot be determined, and the run is
+    /// made.
     pub origin: Option<String>,
     /// The checkpoint of another run that it goes on from, if any.
     pub from: Option<PathBuf>,

@@ -139,7 +139,7 @@ fn fields(record: &RunRecord, frames: &[Frame], wanted: Option<FieldName>) -> Ve
     }
 }
 
-/// Whether the free surface tells something: where a body runs out, or there is one to compare with.
+/// Whether the free surface shows something: where a body runs out, or there is one to compare with.
 fn has_surface(record: &RunRecord, reference: Option<&Columns>) -> bool {
     let is_measured = reference.is_some_and(|table| ["time", "x", "y"].iter().all(|name| table.get(name).is_some()));
     record.regime() == Regime::Dynamic || !record.columns("runout").is_empty() || is_measured

@@ -14,7 +14,7 @@ use clap::Args;
 
 use crate::{Error, case};
 
-/// Seconds before the end of the job at which Slurm tells the ranks to stop, where the job is long enough.
+/// Seconds before the end of the job at which Slurm signals the ranks to stop, where the job is long enough.
 const NOTICE: u64 = 300;
 /// Shortest job: a start, a step and a checkpoint must fit.
 const SHORTEST: u64 = 120;
@@ -60,16 +60,16 @@ pub struct SlurmArguments {
     pub command: Vec<String>,
 }
 
-/// Writes the script, or returns it where it is for stdout; `told` gets what is doubtful.
+/// Writes the script, or returns it where it is for stdout; `report` gets what is doubtful.
 ///
 /// # Errors
 /// [`Error::Missing`] and [`Error::BadCase`] before anything is written; those of the script's file.
-pub fn run(arguments: &SlurmArguments, mut told: impl FnMut(&str)) -> Result<Option<Vec<u8>>, Error> {
+pub fn run(arguments: &SlurmArguments, mut report: impl FnMut(&str)) -> Result<Option<Vec<u8>>, Error> {
     let path = &arguments.case;
     let case = case::parsed(path, &case::load(path)?, &arguments.set)?;
-    case.warnings_on(arguments.ranks as usize).iter().for_each(|warning| told(warning));
+    case.warnings_on(arguments.ranks as usize).iter().for_each(|warning| report(warning));
     if let Some(doubt) = doubt(&case, arguments.ranks.into()) {
-        told(&doubt);
+        report(&doubt);
     }
     let script = arguments.script();
     let Some(file) = &arguments.script else { return Ok(Some(script)) };

@@ -42,7 +42,7 @@ const NAME: &str = "sweep";
 #[command(after_help = "\
 Every combination of the values is a run, or with --one-at-a-time the case as it is and each value by itself. The case as it is,
 or --baseline, is always among them. Settings that the case refuses, runs that fail and runs that would not fit into memory are
-told in the table and end nothing else. Finished runs are kept while their case, solver and launcher are the same; one that
+reported in the table and end nothing else. Finished runs are kept while their case, solver and launcher are the same; one that
 was stopped or killed goes on from its checkpoint.
 
 A quantity is a column of history.csv at a time, linear between steps, or at the end. Several names count together: the root
@@ -94,16 +94,16 @@ fn share(text: &str) -> Result<f64, String> {
     share.ok().filter(|share| *share > 0.0 && share.is_finite()).ok_or_else(|| "a share, e.g. 2% or 0.02".to_owned())
 }
 
-/// Sweeps; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
+/// Sweeps; `report` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
 ///
 /// # Errors
 /// Those of the command line and the case before anything runs; [`Error::NoResult`] if no run came to its end; those of
 /// files.
-pub fn run(arguments: &SweepArguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+pub fn run(arguments: &SweepArguments, mut report: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (plan, options, path) = (arguments.plan()?, &arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".sweep"));
     let batch = options.batch(&command, path, &output)?;
-    let outcomes = outcomes(&batch, &plan, command::ranks(&command), &mut told);
+    let outcomes = outcomes(&batch, &plan, command::ranks(&command), &mut report);
     let (values, outcomes) = measured(&plan.quantities, outcomes);
     let reference = plan.reference.find(&plan.quantities, &plan.points, &values)?;
     let parts = ReportParts {
@@ -136,7 +136,7 @@ pub fn run(arguments: &SweepArguments, mut told: impl FnMut(&str)) -> Result<(St
 }
 
 /// What became of every point: those that could be begun were.
-fn outcomes(batch: &Batch, plan: &SweepPlan, ranks: usize, told: &mut dyn FnMut(&str)) -> Vec<Outcome> {
+fn outcomes(batch: &Batch, plan: &SweepPlan, ranks: usize, report: &mut dyn FnMut(&str)) -> Vec<Outcome> {
     let mut outcomes: Vec<Option<Outcome>> = plan.points.iter().map(|point| refused(point, batch, ranks)).collect();
     let wanted: Vec<usize> = (0..outcomes.len()).filter(|&index| outcomes[index].is_none()).collect();
     let orders: Vec<RunOrder> =
@@ -147,7 +147,7 @@ fn outcomes(batch: &Batch, plan: &SweepPlan, ranks: usize, told: &mut dyn FnMut(
         let kept = if outcome.kept { ", kept" } else { "" };
         let (name, cpu) = (plan.points[wanted[index]].name(), outcome.cost.cpu_seconds);
         let line = format!("{ended}/{count}  {name}: {}, {cpu:.1} CPU s{kept} {}", outcome.words(), outcome.reason);
-        told(line.trim_end());
+        report(line.trim_end());
     };
     let made = if plan.quantities.iter().any(SweepQuantity::is_factor) {
         batch.with(&orders, ranks, |order| safety::outcome(batch, order), &mut tell)

@@ -71,12 +71,12 @@ struct MatrixPart<'a> {
     rows: Vec<&'a matrix::MatrixRow>,
 }
 
-/// Runs and judges the matrix; `told` gets each study's part of the table as soon as it is there.
+/// Runs and judges the matrix; `report` gets each study's part of the table as soon as it is there.
 ///
 /// # Errors
 /// A matrix that cannot be read, or of which nothing that is asked for can fail; a solver that is not there; files that
 /// cannot be written. Runs that fail are rows that fail.
-pub fn run(arguments: &ValidateArguments, mut told: impl FnMut(&str)) -> Result<MatrixCounts, Error> {
+pub fn run(arguments: &ValidateArguments, mut report: impl FnMut(&str)) -> Result<MatrixCounts, Error> {
     let matrix = ValidationMatrix::read(&arguments.matrix)?;
     let parts = parts(&matrix, arguments)?;
     let solver = SolverProgram { command: &arguments.command, side_by_side: false };
@@ -93,12 +93,12 @@ pub fn run(arguments: &ValidateArguments, mut told: impl FnMut(&str)) -> Result<
         }
         let begin = rows.len();
         rows.extend(wanted.into_iter().map(|row| judged(study, row, &outcomes)));
-        told(&table::text(&study.title, &rows[begin..]));
+        report(&table::text(&study.title, &rows[begin..]));
         write(&arguments.output.join("table.md"), &table::markdown(&rows))?;
         write(&arguments.output.join("table.csv"), &table::csv(&rows))?;
         for reason in draw(study, &outcomes, base, &arguments.output) {
             undrawn += 1;
-            told(&format!("  {reason}"));
+            report(&format!("  {reason}"));
         }
     }
     let count = |is: fn(RowVerdict) -> bool| rows.iter().filter(|row| is(row.verdict)).count();
@@ -180,7 +180,7 @@ fn judged(study: &MatrixStudy, row: &matrix::MatrixRow, outcomes: &BTreeMap<Stri
 fn verdict(row: &matrix::MatrixRow, found: &Result<MeasuredNumber, Lack>, is_broken: bool) -> RowVerdict {
     match (found, &row.known) {
         (Err(Lack::NotReached(_)), _) if !row.is_judged() => RowVerdict::NotReached,
-        _ if !row.is_judged() => RowVerdict::Told,
+        _ if !row.is_judged() => RowVerdict::Warned,
         _ if is_broken => RowVerdict::Failed,
         (Err(Lack::NotReached(_)), _) => RowVerdict::Missed,
         (Ok(ours), known) if row.holds(ours.value) => known.as_ref().map_or(RowVerdict::Passed, |_| RowVerdict::Mended),

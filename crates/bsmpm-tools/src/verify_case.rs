@@ -1,5 +1,5 @@
 //! `bsmpm verify-case`: how far a case is from the limit of ever smaller cells. Three grids are made in `grids` and run
-//! by `crate::batch`, what they say of each quantity is found in `crate::grid_convergence` and told in `report`.
+//! by `crate::batch`, what they say of each quantity is found in `crate::grid_convergence` and reported in `report`.
 
 use std::path::PathBuf;
 
@@ -69,12 +69,12 @@ pub struct VerifyArguments {
     pub options: Options,
 }
 
-/// Verifies; `told` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
+/// Verifies; `report` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
 ///
 /// # Errors
 /// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not
 /// come to its end; those of files.
-pub fn run(arguments: &VerifyArguments, mut told: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
+pub fn run(arguments: &VerifyArguments, mut report: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let (options, path) = (&arguments.options, &*arguments.case);
     let (command, output) = (options.words(), options.directory(path, ".verify"));
     let bytes = case::load(path)?;
@@ -82,7 +82,7 @@ pub fn run(arguments: &VerifyArguments, mut told: impl FnMut(&str)) -> Result<(S
     let batch = options.batch(&command, path, &output)?;
     let outcomes = batch.run(&grids.orders, command::ranks(&command), |index, outcome| {
         let (h, cpu) = (grids.sizes[index], outcome.cost.cpu_seconds);
-        told(format!("cells of {h} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason).trim_end());
+        report(format!("cells of {h} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason).trim_end());
     });
     for (outcome, h) in outcomes.iter().zip(grids.sizes) {
         ended(outcome, h)?;

@@ -242,7 +242,7 @@ fn circles_from(sources: &Sources, root: &str) -> Vec<String> {
     let parts: BTreeSet<BTreeSet<Segments>> =
         tree.0.keys().map(of).filter(|part: &BTreeSet<_>| !part.is_empty()).collect();
     let file = |at: &Segments| tree.0[at].0.as_str();
-    let told = |part: BTreeSet<Segments>| {
+    let describe = |part: BTreeSet<Segments>| {
         let within = arrows.iter().filter(|((from, to), _)| part.contains(from) && part.contains(to));
         let arrow = |((from, to), paths): (&(Segments, Segments), &BTreeSet<String>)| {
             let paths: Vec<&str> = paths.iter().map(String::as_str).collect();
@@ -251,7 +251,7 @@ fn circles_from(sources: &Sources, root: &str) -> Vec<String> {
         let files: Vec<&str> = part.iter().map(file).collect();
         format!("circle of {}{}", files.join(", "), within.map(arrow).collect::<String>())
     };
-    parts.into_iter().map(told).collect()
+    parts.into_iter().map(describe).collect()
 }
 
 /// Takes the sources below a folder.
@@ -293,8 +293,8 @@ fn a_circle_is_found_with_its_arrows() {
         made(&[LIB, ("a.rs", "use crate::{b::{self, B as Other}};\npub struct A;"), ("b.rs", "mod c; use c::*;"), c]);
     assert!(found.is_empty(), "from a to b, from c to a, but not from b to c: {found:?}");
     let found = made(&[LIB, ("a.rs", "use crate::b::c::f;\npub struct A;"), ("b.rs", "pub mod c;"), c]);
-    let told = "circle of a.rs, b/c.rs\n  a.rs -> b/c.rs: crate::b::c::f\n  b/c.rs -> a.rs: crate::a::A";
-    assert_eq!(found, [told]);
+    let expected = "circle of a.rs, b/c.rs\n  a.rs -> b/c.rs: crate::b::c::f\n  b/c.rs -> a.rs: crate::a::A";
+    assert_eq!(found, [expected]);
 }
 
 #[test]

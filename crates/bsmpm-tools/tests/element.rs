@@ -96,10 +96,10 @@ fn what_a_material_cannot_carry_ends_the_test_with_code_80() {
     let mut arguments = arguments(Path::new(CASE), directory.path());
     arguments.tests = vec!["drained-100".to_owned()];
     arguments.set = vec!["element.drained-100.stage.0.pressure=500 kPa".to_owned()];
-    let mut told = String::new();
-    let error = run(&arguments, |line| told.push_str(line)).unwrap_err();
+    let mut reported = String::new();
+    let error = run(&arguments, |line| reported.push_str(line)).unwrap_err();
     assert_eq!(error.exit_code(), 80);
-    assert!(error.to_string().contains("stress-yy") && told.contains("drained-100"), "{error}, {told}");
+    assert!(error.to_string().contains("stress-yy") && reported.contains("drained-100"), "{error}, {reported}");
     let found = table::read(&directory.path().join("drained-100.csv")).unwrap();
     let last = *found.get("deviator").unwrap().last().unwrap();
     assert!(last > 2.6e5 && last < 2.7e5, "{last}");

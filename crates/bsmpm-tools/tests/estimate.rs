@@ -51,8 +51,8 @@ fn evaluations(case: &bsmpm_scene::Case) -> u64 {
 
 /// A run of so many steps at most; whether it stopped before the end. A step costs four evaluations besides its own.
 fn write_run(case: &bsmpm_scene::Case, directory: &Path, most: u64) -> bool {
-    let told = ManifestCase::new("column.toml", &case.title, "plane-strain", case.text.clone());
-    let mut manifest = Manifest::begin("0.1.0", Vec::new(), told);
+    let reported = ManifestCase::new("column.toml", &case.title, "plane-strain", case.text.clone());
+    let mut manifest = Manifest::begin("0.1.0", Vec::new(), reported);
     let directory = OutputDirectory::hold(directory, Unseen::Respect)
         .and_then(|held| held.claim(Existing::Delete, &manifest))
         .unwrap();
@@ -160,8 +160,9 @@ fn a_finished_run_is_set_beside_it() {
     let output = bench.estimate(&["column.toml", "--no-probe", "--against", "column.out"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("actual, 1 rank(s)") && text.contains("estimated / actual"), "{text}");
-    let told = bench.estimate(&["column.toml", "--no-probe", "--against", "column.out", "--set", "grid.degree=cubic"]);
-    assert!(String::from_utf8(told.stderr).unwrap().contains("another text of the case"));
+    let reported =
+        bench.estimate(&["column.toml", "--no-probe", "--against", "column.out", "--set", "grid.degree=cubic"]);
+    assert!(String::from_utf8(reported.stderr).unwrap().contains("another text of the case"));
 }
 
 #[test]

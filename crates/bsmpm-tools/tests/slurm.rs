@@ -31,8 +31,8 @@ impl Scratch {
         let scratch = Self(tempfile::tempdir().unwrap());
         std::fs::create_dir(scratch.path("bin")).unwrap();
         // Both tell what they were called with, every word ended by a NUL.
-        scratch.program("srun", "printf '%s\\0' \"$@\" >>srun.told\nexit \"$(cat code)\"");
-        scratch.program("scontrol", "printf '%s\\0' \"$@\" >>scontrol.told\nexit \"$(cat requeued)\"");
+        scratch.program("srun", "printf '%s\\0' \"$@\" >>srun.arguments\nexit \"$(cat code)\"");
+        scratch.program("scontrol", "printf '%s\\0' \"$@\" >>scontrol.arguments\nexit \"$(cat requeued)\"");
         std::fs::write(scratch.path("case.toml"), CASE).unwrap();
         scratch
     }
@@ -59,7 +59,7 @@ impl Scratch {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Runs a script as a job whose run ends with `code`; its own code, and what srun and scontrol were told.
+    /// Runs a script as a job whose run ends with `code`; its own code, and what srun and scontrol were given.
     fn job(&self, script: &[u8], code: u8, requeued: u8) -> (Option<i32>, Vec<Vec<u8>>, Vec<Vec<u8>>) {
         std::fs::write(self.path("job.sh"), script).unwrap();
         std::fs::write(self.path("code"), code.to_string()).unwrap();
@@ -68,14 +68,14 @@ impl Scratch {
         let mut command = Command::new("bash");
         command.arg("job.sh").env("PATH", path).env("SLURM_JOB_ID", "4711").current_dir(self.0.path());
         let output = command.output().unwrap();
-        let told = |name: &str| {
+        let arguments = |name: &str| {
             let bytes = std::fs::read(self.path(name)).unwrap_or_default();
             _ = std::fs::remove_file(self.path(name));
             let mut words: Vec<Vec<u8>> = bytes.split(|byte| *byte == 0).map(<[u8]>::to_vec).collect();
             words.pop();
             words
         };
-        (output.status.code(), told("srun.told"), told("scontrol.told"))
+        (output.status.code(), arguments("srun.arguments"), arguments("scontrol.arguments"))
     }
 }
 
@@ -122,7 +122,11 @@ fn only_75_is_queued_again() {
     let requeue = ["requeue", "4711"].map(|word| word.as_bytes().to_vec()).to_vec();
     assert_eq!(scratch.job(script.as_bytes(), 75, 0).0, Some(0));
     assert_eq!(scratch.job(script.as_bytes(), 75, 0).2, requeue, "once");
-    assert_eq!(scratch.job(script.as_bytes(), 75, 1).0, Some(75), "where Slurm does not take it back, that is told");
+    assert_eq!(
+        scratch.job(script.as_bytes(), 75, 1).0,
+        Some(75),
+        "where Slurm does not take it back, that is reported"
+    );
     for code in [0, 1, 2, 65, 70, 71, 73, 74, 76, 77, 80, 81, 137] {
         let (own, _, requeued) = scratch.job(script.as_bytes(), code, 0);
         assert_eq!((own, requeued.len()), (Some(code.into()), 0));
@@ -139,8 +143,8 @@ fn options_arrive_in_the_job() {
         assert!(script.contains(&format!("#SBATCH {line}\n")), "{script}");
     }
     sound(&scratch, script.as_bytes());
-    let (_, told, _) = scratch.job(script.as_bytes(), 0, 0);
-    let told: Vec<String> = told.into_iter().map(|word| String::from_utf8(word).unwrap()).collect();
+    let (_, arguments, _) = scratch.job(script.as_bytes(), 0, 0);
+    let arguments: Vec<String> = arguments.into_iter().map(|word| String::from_utf8(word).unwrap()).collect();
     let expected = [
         "--mpi=pmix",
         "/opt/x y/bsmpm-par",
@@ -152,7 +156,7 @@ fn options_arrive_in_the_job() {
         "--max-wall",
         "24:00:00",
     ];
-    assert_eq!(told, [&expected[..], &["--set=grid.cell=0.25 m"]].concat());
+    assert_eq!(arguments, [&expected[..], &["--set=grid.cell=0.25 m"]].concat());
 }
 
 #[test]
@@ -193,10 +197,10 @@ fn s2_hostile_names_are_words_and_nothing_else() {
             script.split(|byte| *byte == b'\n').nth(1).unwrap().strip_prefix(b"#SBATCH --job-name=").unwrap();
         let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"._-".contains(byte);
         assert!(!job_name.is_empty() && job_name.iter().all(is_plain) && job_name[0] != b'-', "{job_name:?}");
-        let (code, told, _) = scratch.job(&script, 0, 0);
+        let (code, arguments, _) = scratch.job(&script, 0, 0);
         assert_eq!(code, Some(0));
-        assert_eq!(OsString::from_vec(told[1].clone()), path.as_os_str(), "byte for byte");
-        assert_eq!(told[3], b"$(touch pwned)");
+        assert_eq!(OsString::from_vec(arguments[1].clone()), path.as_os_str(), "byte for byte");
+        assert_eq!(arguments[3], b"$(touch pwned)");
         assert!(!scratch.path("pwned").exists());
     }
 }

@@ -35,11 +35,11 @@ fn build() -> HashMap<String, PathBuf> {
     let cargo = cargo.stdin(Stdio::null()).stderr(Stdio::inherit());
     let output = cargo.output().unwrap_or_else(|error| panic!("{cargo:?}: {error}"));
     assert!(output.status.success(), "the programs under test cannot be built: {cargo:?}");
-    let told = String::from_utf8(output.stdout).expect("cargo's messages");
-    told.lines().filter_map(executable_of).collect()
+    let messages = String::from_utf8(output.stdout).expect("cargo's messages");
+    messages.lines().filter_map(executable_of).collect()
 }
 
-/// Name and path of the executable that a message of cargo's tells of.
+/// Name and path of the executable that a message of cargo names.
 fn executable_of(message: &str) -> Option<(String, PathBuf)> {
     let message: serde_json::Value = serde_json::from_str(message).ok()?;
     Some((message["target"]["name"].as_str()?.to_owned(), message["executable"].as_str()?.into()))

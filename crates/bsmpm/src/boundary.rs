@@ -93,8 +93,8 @@ pub struct Boundary<const D: usize> {
     pub loads: Vec<Load<D>>,
     /// Rigid bodies.
     pub rigid: Vec<RigidBody<D>>,
-    /// Per material, parts of a cell that its points reach to each side at the start: .5 over their number along an
-    /// axis; half a cell where it is not told. For faces that material comes off, and the water's level.
+    /// Per material, parts of a cell that its points reach to each side at the start: 0.5 over their number along an
+    /// axis; half a cell where it is not reported. For faces that material comes off, and the water's level.
     pub reach: Vec<f64>,
 }
 
@@ -109,7 +109,7 @@ impl<const D: usize> Boundary<D> {
     }
 
     /// A place of the material's surface, or that on the face which holds the material where the place lies beyond it,
-    /// as one that is told by the material beside it may.
+    /// as one that is reported by the material beside it may.
     pub fn kept_in(&self, grid: &Grid<D>, mut x: Vector<D>) -> Vector<D> {
         for Support { axis, upper, velocity, contact, .. } in &self.supports {
             if velocity[*axis] == Some(0.0) || contact.is_some() {
@@ -252,7 +252,7 @@ impl<const D: usize> Boundary<D> {
         };
         let holds = |support: &Support<D>, component: usize| support.velocity[component].is_some();
         let in_contact = |(support, _): &(&Support<D>, &mut [Exact])| support.contact.is_some();
-        // Who holds goes first, then what pushes, then what rubs.
+        // Who holds goes first, then what pushes, then what has friction.
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
             sum((support, sums), &|_, component| component == support.axis && holds(support, component));
         }
@@ -269,10 +269,10 @@ impl<const D: usize> Boundary<D> {
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
             sum((support, sums), &|_, component| component == support.axis);
         }
-        // Along an edge in space that it shares with a face that rubs, a smooth one decides nothing.
-        for rubs in [true, false] {
+        // Along an edge in space that it shares with a face with friction, a smooth one decides nothing.
+        for has_friction in [true, false] {
             let of = |(support, _): &(&Support<D>, &mut [Exact])| {
-                support.contact.is_some_and(|contact| (contact.friction > 0.0) == rubs)
+                support.contact.is_some_and(|contact| (contact.friction > 0.0) == has_friction)
             };
             for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(of) {
                 sum((support, sums), &|_, component| component != support.axis);

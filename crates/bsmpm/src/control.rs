@@ -154,7 +154,7 @@ impl Stepper {
             let dt = end - self.at.t;
             let mut guess = self.scaled_guess(dt);
             let resisted = if has_drag { Resisted::Displacement } else { self.resisted(model, dt) };
-            let model = self.suddenly(model.over(dt));
+            let model = self.with_sudden_forces(model.over(dt));
             match step(&model, points, &mut guess, (self.at.t, dt), resisted, (halo, solver), &mut counts) {
                 Ok(report) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
@@ -201,7 +201,10 @@ impl Stepper {
     }
 
     /// The model in the first step of a stage: forces act at once which the points' acceleration knows nothing of.
-    fn suddenly<'a, K: Kinematics<D>, const D: usize>(&self, model: Cow<'a, Model<K, D>>) -> Cow<'a, Model<K, D>> {
+    fn with_sudden_forces<'a, K: Kinematics<D>, const D: usize>(
+        &self,
+        model: Cow<'a, Model<K, D>>,
+    ) -> Cow<'a, Model<K, D>> {
         let begins = self.at.guess_dt == 0.0 && self.at.t > 0.0 && model.regime == Regime::Dynamic;
         if begins { Cow::Owned(Model { newmark: Newmark::of_the_end(), ..model.into_owned() }) } else { model }
     }

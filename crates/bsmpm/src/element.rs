@@ -1,7 +1,7 @@
 //! One material point driven along a path of strains and stresses: a laboratory test of what a law's parameters mean.
 //!
-//! Lines along x stay along x, `F = [[a, γ b, 0], [0, b, 0], [0, 0, c]]`, and the path is told in the logarithms of a,
-//! b and c and in γ. Each of the four components is given, or follows from a Cauchy stress that is; without drainage
+//! Lines along x stay along x, `F = [[a, γ b, 0], [0, b, 0], [0, 0, c]]`, and the path is reported in the logarithms of
+//! a, b and c and in γ. Each of the four components is given, or follows from a Cauchy stress that is; without drainage
 //! the volume stays and what the stress lacks is pore pressure. It is the constitution of the solver, point for point,
 //! and knows no grid: no inertia, no F-bar.
 

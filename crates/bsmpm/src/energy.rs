@@ -1,5 +1,5 @@
 //! Energy bookkeeping: what a step takes in, stores, dissipates and loses, each measured by itself, so that what is
-//! left over tells whether the books are right.
+//! left over says whether the books are right.
 //!
 //! Over any number of steps, with T and E the kinetic and elastic energy of the points,
 //!
@@ -161,7 +161,7 @@ pub struct Draft {
     damped: Exact, // part of what is dissipated
     elastic: Exact,
     dry: Option<Vec<f64>>, // kg  masses before the points take water in, where it flows
-    rubbed: Exact,         // half of the work of friction and dashpots at faces, part of the external work
+    friction_work: Exact,  // half of the work of friction and dashpots at faces, part of the external work
     t: f64,
     dt: f64,
 }
@@ -174,11 +174,11 @@ impl Draft {
         (found, answers): (&Found<K, D>, &[Answer]),
         (t, dt): (f64, f64),
     ) -> Self {
-        let Problem { model, nodes, grips, points, halo, .. } = *problem;
+        let Problem { model, nodes, attachments, points, halo, .. } = *problem;
         let u = &found.u[..];
         let supports = over_layers(halo, D, |c| found.reaction[c] * u[c]);
         let mut flows = Flows { external: supports, ..Flows::<Exact>::default() };
-        let [closing, rubbed] = nodes.contacts.work(u, &found.reaction, halo);
+        let [closing, friction_work] = nodes.contacts.work(u, &found.reaction, halo);
         flows.external -= &closing;
         flows.integration -= &closing;
         if let Some(inertia) = nodes.inertia.as_ref().filter(|inertia| !inertia.struck.is_empty()) {
@@ -186,25 +186,25 @@ impl Draft {
             flows.external += &blow;
             flows.transfer = blow;
         }
-        let mut rubbed = rubbed;
+        let mut friction_work = friction_work;
         if !nodes.rigid.is_empty() {
             let [given, grown, friction] = nodes.rigid.work(u, halo);
             flows.external += &given;
             flows.integration -= &grown;
-            rubbed += &friction;
+            friction_work += &friction;
         }
         if let Some(inertia) = &nodes.inertia {
-            rubbed.extend(nodes.dashpots.work::<D>(inertia, u, halo).into_iter().map(|work| 0.5 * work));
+            friction_work.extend(nodes.dashpots.work::<D>(inertia, u, halo).into_iter().map(|work| 0.5 * work));
         }
         add_gravity(&mut flows, problem, u, (t, dt));
         add_water(&mut flows, problem, u, (t, dt));
-        let strips = grips.work(u);
+        let strips = attachments.work(u);
         flows.external += &strips.given;
-        flows.external -= &strips.rubbed;
+        flows.external -= &strips.friction_work;
         flows.integration -= &strips.grown;
         flows.penalty = strips.given;
         flows.penalty -= &strips.taken;
-        flows.penalty -= &strips.rubbed;
+        flows.penalty -= &strips.friction_work;
         let stored =
             |p: usize| [answers[p].dissipation, answers[p].elastic_energy].map(|dense| points.volume[p] * dense);
         let [plastic, mut elastic] = threads::sums(points.len(), stored);
@@ -226,7 +226,7 @@ impl Draft {
             elastic += &water.held;
         }
         let dry = nodes.pores.is_some().then(|| points.mass.to_vec());
-        let mut draft = Self { flows, damped, elastic, dry, rubbed, t, dt };
+        let mut draft = Self { flows, damped, elastic, dry, friction_work, t, dt };
         if model.balances_energy {
             draft.add_losses(problem, (found, answers));
         }
@@ -270,7 +270,7 @@ impl Draft {
         surface: &Surface<D>,
         halo: &dyn Halo,
     ) -> (Option<Flows>, Turnover) {
-        let Self { flows: mut own, damped, elastic: strained, dry, rubbed, t, dt } = self;
+        let Self { flows: mut own, damped, elastic: strained, dry, friction_work, t, dt } = self;
         let moving = kinetic(points);
         if let Some((dry, motion)) = dry.zip(points.motion.as_ref()) {
             let masses = points.mass.iter().zip(dry);
@@ -282,7 +282,7 @@ impl Draft {
         let mut external = own.external.clone();
         // Where loads grow in the first step, forces at its end do up to twice the work that is counted by their mean:
         // of friction and dashpots half is left out of the bound on what is made.
-        external -= &rubbed;
+        external -= &friction_work;
         let round_off = round_off(model, points);
         let mut sums = vec![external, own.plastic.clone(), damped, moving.clone(), strained, round_off];
         if model.balances_energy {

@@ -82,8 +82,8 @@ impl<const D: usize> FreeField<D> {
     }
 }
 
-/// Goes on beside ground that a stage has changed, at the time `t`, and whose sides are held anew: by these forces
-/// less those of the columns, which act there all along. The columns are held anew, too, as their base may absorb from
+/// Goes on beside ground that a stage has changed, at the time `t`, and whose sides are held again: by these forces
+/// less those of the columns, which act there all along. The columns are held again, too, as their base may absorb from
 /// now on.
 pub fn go_on<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
@@ -161,8 +161,9 @@ fn hold<K: Kinematics<D>, const D: usize>(
     }
     let shape = Shape::at(&alone.grid, column)?;
     let nodes = Nodes::map(alone, &shape, column, (t, 0.0), &tied)?;
-    let grips = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, 0.0));
-    let problem = Problem { model: alone, shape: &shape, nodes: &nodes, grips: &grips, points: column, halo: &tied };
+    let attachments = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, 0.0));
+    let problem =
+        Problem { model: alone, shape: &shape, nodes: &nodes, attachments: &attachments, points: column, halo: &tied };
     let trial = Trial::of(alone, &shape, &nodes, column, &vec![0.0; nodes.free.len()], &tied);
     force(&problem, &trial, face)
 }
@@ -186,7 +187,7 @@ fn everywhere<const D: usize>(mut own: Points<D>, halo: &dyn Halo) -> Points<D> 
     all
 }
 
-/// Steps a column, and tells what it is then to the nodes of its face.
+/// Steps a column, and gives what it is then to the nodes of its face.
 fn advance<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     face: &Support<D>,
@@ -201,8 +202,9 @@ fn advance<K: Kinematics<D>, const D: usize>(
     {
         inertia.newmark = Newmark::of_the_end();
     }
-    let grips = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, dt));
-    let problem = Problem { model: alone, shape: &shape, nodes: &nodes, grips: &grips, points: &column, halo: &tied };
+    let attachments = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, dt));
+    let problem =
+        Problem { model: alone, shape: &shape, nodes: &nodes, attachments: &attachments, points: &column, halo: &tied };
     let guess: Vec<f64> = nodes.inertia.iter().flat_map(|inertia| inertia.v.iter().map(|v| v * dt)).collect();
     let found = solve::find(&problem, &guess, &mut solver, &mut Counts::default())?;
     commit::check_inside(alone, &shape, &column, &found.u, &tied)?;

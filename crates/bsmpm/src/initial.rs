@@ -145,7 +145,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
             Symmetric::of(&K::gradient::<f64>(&grad))
         });
     }
-    let (_, traction) = start.grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &u, halo);
+    let (_, traction) = start.attachments.conclude((&model.boundary.strips, &model.grid), &points.surface, &u, halo);
     points.surface.traction = traction;
     for (p, strain) in strains.iter().enumerate() {
         points.b_e.set(p, exponential(strain));
@@ -177,9 +177,9 @@ pub fn hold_at<K: Kinematics<D>, const D: usize>(
         return Ok(());
     }
     let at_rest = &model.at_rest();
-    let Undeformed { shape, mut nodes, mut grips } = Undeformed::at(at_rest, points, t, halo)?;
+    let Undeformed { shape, mut nodes, mut attachments } = Undeformed::at(at_rest, points, t, halo)?;
     let (guess, counts) = (vec![0.0; model.grid.nodes() * D], &mut Counts::default());
-    let around = (&mut grips, &*points);
+    let around = (&mut attachments, &*points);
     let found = contact::find(at_rest, &shape, &mut nodes, around, &guess, (halo, solver), counts)?;
     points.surface.held = model.boundary.held(&model.grid, &found.reaction, halo);
     Ok(())
@@ -204,7 +204,8 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
     halo.reduce(&mut yielding);
     let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
-    let (strips, _) = start.grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &at_rest, halo);
+    let (strips, _) =
+        start.attachments.conclude((&model.boundary.strips, &model.grid), &points.surface, &at_rest, halo);
     Ok(Equilibrium { force: balance.measure(), yielding: yielding[0] as u64, reactions, strips })
 }
 
@@ -226,7 +227,7 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
 struct Undeformed<const D: usize> {
     shape: Shape<D>,
     nodes: Nodes<D>,
-    grips: StripAttachments<D>,
+    attachments: StripAttachments<D>,
 }
 
 impl<const D: usize> Undeformed<D> {
@@ -253,10 +254,10 @@ impl<const D: usize> Undeformed<D> {
             nodes.f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
         }
         let movable = nodes.movable();
-        let mut grips =
+        let mut attachments =
             StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, 0.0));
-        grips.wet(nodes.pore_pressure.as_ref());
-        Ok(Self { shape, nodes, grips })
+        attachments.wet(nodes.pore_pressure.as_ref());
+        Ok(Self { shape, nodes, attachments })
     }
 
     fn problem<'a, K>(
@@ -265,7 +266,7 @@ impl<const D: usize> Undeformed<D> {
         points: &'a Points<D>,
         halo: &'a dyn Halo,
     ) -> Problem<'a, K, D> {
-        Problem { model, shape: &self.shape, nodes: &self.nodes, grips: &self.grips, points, halo }
+        Problem { model, shape: &self.shape, nodes: &self.nodes, attachments: &self.attachments, points, halo }
     }
 }
 

@@ -5,7 +5,7 @@
 //! there for sure, and a call that remains costs time but no digit.
 //!
 //! No product is fused with a sum. With all fused that can be (`RUSTFLAGS="-C llvm-args=--fp-contract=fast"`: 3,931
-//! fused instructions for 154) column and footing take .96 to 1.00 and 1.00 to 1.02 of the CPU seconds in mid-flow
+//! fused instructions for 154) column and footing take 0.96 to 1.00 and 1.00 to 1.02 of the CPU seconds in mid-flow
 //! (steps 400 to 415 and 80 to 86, three pairs each) and as many evaluations: memory is the limit, and a rule for FMA
 //! would gain nothing.
 

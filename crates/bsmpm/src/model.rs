@@ -252,8 +252,8 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
             return Span::default();
         }
         let start = points.x[p] - points.u[p];
-        let told = self.boundary.reach.get(usize::from(points.material[p])).zip(self.grid.locate(&start));
-        told.map_or_else(Span::default, |(share, cell)| {
+        let reach = self.boundary.reach.get(usize::from(points.material[p])).zip(self.grid.locate(&start));
+        reach.map_or_else(Span::default, |(share, cell)| {
             let (lower, edges) = self.grid.cell_box(&cell);
             let parts = edges * (2.0 * share);
             let filled = points.volume[p] / (parts.product() * K::weight(&start));
@@ -263,7 +263,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         })
     }
 
-    /// What tells how far the points reach.
+    /// What shows how far the points reach.
     pub fn reaching<'a>(&'a self, points: &'a Points<D>) -> Reaching<'a, D> {
         Reaching { grid: &self.grid, points, reach: &self.boundary.reach, weight: K::weight }
     }

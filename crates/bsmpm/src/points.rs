@@ -157,7 +157,7 @@ columns! {
         /// -  b^e after smoothing by that before, a left Cauchy-Green tensor, in the last step, where damped points are
         ///   smoothed; before that it is the identity
         smoothing: Packed<D, Symmetric>, "-", None, || Symmetric::IDENTITY;
-        /// -  logarithm of the volume that gapes, where a material closes its gaps, from its first step on; before that
+        /// -  logarithm of the volume of the gap, where a material closes its gaps, from its first step on; before that
         ///   it is 0
         gap: Vec<f64>, "-", None, || 0.0;
         /// m  displacement when displacements were last set to zero, from that stage on; before that it is 0
@@ -248,7 +248,7 @@ impl<const D: usize> Points<D> {
         }
     }
 
-    /// What flowed in the last step tells nothing of the next one: the ground has changed, or what acts on it.
+    /// What flowed in the last step says nothing of the next one: the ground has changed, or what acts on it.
     pub fn forget_flow(&mut self) {
         (self.content_change, self.gradient_change, self.surface.flowed) = (None, None, None);
     }
@@ -280,7 +280,7 @@ impl<const D: usize> Points<D> {
         self.x[p][D - 1] - self.u[p][D - 1]
     }
 
-    /// Logarithm of the volume that gapes at a point.
+    /// Logarithm of the volume of the gap at a point.
     #[inline]
     pub fn gap_of(&self, p: usize) -> f64 {
         self.gap.as_ref().map_or(0.0, |gap| gap[p])

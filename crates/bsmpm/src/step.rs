@@ -69,12 +69,15 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         inertia.newmark = Newmark::of_the_end();
     }
     let movable = nodes.movable();
-    let mut grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, dt));
-    grips.wet(nodes.pore_pressure.as_ref());
-    let found = solve::contact::find(model, &shape, &mut nodes, (&mut grips, points), guess, (halo, solver), counts)?; // (3)-(9)
-    let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
+    let mut attachments =
+        StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, dt));
+    attachments.wet(nodes.pore_pressure.as_ref());
+    let found =
+        solve::contact::find(model, &shape, &mut nodes, (&mut attachments, points), guess, (halo, solver), counts)?; // (3)-(9)
+    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo };
     commit::check_inside(model, &shape, points, &found.u, halo)?;
-    let (strips, traction) = grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
+    let (strips, traction) =
+        attachments.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
     let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
     if let Some(bodies) = rigid::overlapping(&model.boundary.rigid, &bodies) {
         return Err(StepError::Overlapping { bodies });

@@ -44,7 +44,7 @@ impl Id {
 
 impl Drop for Id {
     fn drop(&mut self) {
-        // SAFETY: a valid identifier, of which this is the only owner. An error can no longer be told.
+        // SAFETY: a valid identifier, of which this is the only owner. An error can no longer be reported.
         unsafe { H5Idec_ref(self.0) };
     }
 }
@@ -188,7 +188,7 @@ impl File {
         let (action, root) = ("read a name", c".");
         let mut name = [0_u8; NAME];
         let mut link = H5L_info1_t::default();
-        // SAFETY: an open file, valid texts, and a buffer of the length that is told.
+        // SAFETY: an open file, valid texts, and a buffer of the length that is given.
         let length = unsafe {
             let (by, order) = (H5_index_t::H5_INDEX_NAME, H5_iter_order_t::H5_ITER_INC);
             H5Lget_name_by_idx(self.0, root.as_ptr(), by, order, index, name.as_mut_ptr().cast(), NAME, H5P_DEFAULT)
@@ -207,7 +207,7 @@ impl File {
     pub(crate) fn array(&self, name: &str) -> Result<(Array, Shape)> {
         let foreign = |reason: &str| Error::Foreign { item: format!("the array {name}"), reason: reason.to_owned() };
         let label = text(name)?;
-        // SAFETY: an open file and a valid text; opening the object before the array tells a group or type apart.
+        // SAFETY: an open file and a valid text; opening the object before the array distinguishes a group or type.
         let id = unsafe {
             let object = H5Oopen(self.0, label.as_ptr(), H5P_DEFAULT);
             check("open an object", if object < 0 { -1 } else { 0 })?;

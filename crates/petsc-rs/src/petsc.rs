@@ -132,7 +132,7 @@ impl<'u> Petsc<'u> {
 impl Drop for Petsc<'_> {
     fn drop(&mut self) {
         // SAFETY: started by `initialize`; every object borrowed `self`, so all are destroyed, and
-        // MPI still runs because the universe is borrowed. An error here can no longer be told.
+        // MPI still runs because the universe is borrowed. An error here can no longer be reported.
         let _ = check(unsafe { ffi::PetscFinalize() });
     }
 }

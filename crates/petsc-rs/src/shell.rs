@@ -88,7 +88,7 @@ impl<T: ?Sized> Slot<T> {
     }
 }
 
-/// What PETSc is told of a callback that is not there or panicked.
+/// What PETSc receives of a callback that is not there or panicked.
 const FAILED: ffi::PetscErrorCode = ffi::PETSC_ERR_USER as ffi::PetscErrorCode;
 
 impl Slot<Product<'static>> {
@@ -140,7 +140,8 @@ impl<'p> Shell<'p> {
         unsafe { &*self.slot }
     }
 
-    /// Tells PETSc that products differ from now on, so that what was built from the matrix is built anew. Collective.
+    /// Informs PETSc that products differ from now on, so that what was built from the matrix is built again.
+    /// Collective.
     pub fn changed(&self) -> Result<()> {
         // SAFETY: the handle is valid; the two calls belong together, and count the matrix's states.
         check(unsafe { ffi::MatAssemblyBegin(self.raw, ffi::MAT_FINAL_ASSEMBLY) })?;

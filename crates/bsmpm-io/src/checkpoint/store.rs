@@ -137,7 +137,7 @@ impl Store {
         Ok(pending)
     }
 
-    /// Makes a complete and closed file a checkpoint, and removes those beyond the newest few. `at` is told of every
+    /// Makes a complete and closed file a checkpoint, and removes those beyond the newest few. `at` is called for every
     /// phase from [`Phase::Closed`] on.
     ///
     /// # Errors

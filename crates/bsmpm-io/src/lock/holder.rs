@@ -1,4 +1,5 @@
-//! Who holds a lock: a process, told apart from later ones of the same number, and whether it is still there (Linux).
+//! Who holds a lock: a process, distinguished from later ones of the same number, and whether it is still there
+//! (Linux).
 
 use std::fmt::{self, Display, Formatter};
 use std::fs;
@@ -13,7 +14,7 @@ use crate::utc::utc;
 
 /// Variables by which batch systems tell a job's number, which it keeps when it is started again.
 const JOBS: [&str; 3] = ["SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID"];
-/// By which Slurm tells how often a job has been started again; the steps of one start share it.
+/// By which Slurm says how often a job has been started again; the steps of one start share it.
 const RESTARTS: &str = "SLURM_RESTART_COUNT";
 /// bytes  More than any holder's text.
 const LONGEST: u64 = 4096;
@@ -39,7 +40,7 @@ pub(super) enum Fate {
     Alive,
     /// It is not, for this reason.
     Gone(&'static str),
-    /// It cannot be told from here.
+    /// It cannot be determined from here.
     Unseen,
 }
 

@@ -231,7 +231,7 @@ pub struct BackgroundShares {
     pub work: f64,
 }
 
-/// What the ranks told each other in one way, over the run.
+/// What the ranks sent each other in one way, over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Communication {
     /// Exchanges or reductions that every rank took part in.
@@ -266,17 +266,17 @@ pub struct EnergyBalance {
     pub mean: f64,
     /// The largest of them.
     pub largest: f64,
-    /// How often the grid was cut anew.
+    /// How often the grid was cut again.
     pub cuts: u64,
 }
 
 impl EnergyBalance {
     /// Counts one step more.
-    pub fn enter(&mut self, imbalance: f64, is_cut_anew: bool) {
+    pub fn enter(&mut self, imbalance: f64, is_cut_again: bool) {
         self.steps += 1;
         self.mean += (imbalance - self.mean) / self.steps as f64;
         self.largest = self.largest.max(imbalance);
-        self.cuts += u64::from(is_cut_anew);
+        self.cuts += u64::from(is_cut_again);
     }
 }
 

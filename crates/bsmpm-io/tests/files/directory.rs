@@ -119,7 +119,7 @@ fn a_hostile_manifest_deletes_nothing() {
         fs::create_dir(dir.path().join("folder.csv")).unwrap();
         manifest(&["history.csv", name]).write(dir.path()).unwrap();
         let error = claim(dir.path(), Existing::Delete).unwrap_err();
-        assert!(matches!(&error, Error::UnsafeOutput { name: told, .. } if told == name), "{name}: {error}");
+        assert!(matches!(&error, Error::UnsafeOutput { name: reported, .. } if reported == name), "{name}: {error}");
         assert_eq!(error.exit_code(), 73);
         assert!(dir.path().join("history.csv").exists(), "{name}");
         assert!(absolute.exists(), "{name}");

@@ -68,10 +68,13 @@ fn part(frame: &Frame, range: std::ops::Range<usize>) -> Frame {
     part
 }
 
-/// Writes `told` points of which `frame` has `parts`.
-fn write_parts(path: &Path, frame: &Frame, told: usize, parts: &[std::ops::Range<usize>]) -> Result<(), Error> {
+/// Writes `announced` points of which `frame` has `parts`.
+fn write_parts(path: &Path, frame: &Frame, announced: usize, parts: &[std::ops::Range<usize>]) -> Result<(), Error> {
     let mut parts = parts.iter().map(|range| part(frame, range.clone()));
-    vtu::write_parts(path, Parts { head: frame.without_points(), points: told, names: &[], next: &mut || parts.next() })
+    vtu::write_parts(
+        path,
+        Parts { head: frame.without_points(), points: announced, names: &[], next: &mut || parts.next() },
+    )
 }
 
 #[test]
@@ -87,14 +90,14 @@ fn a_frame_has_the_same_bytes_in_whatever_parts_it_comes() {
 }
 
 #[test]
-fn a_frame_of_other_than_the_told_points_replaces_nothing() {
+fn a_frame_of_other_than_the_announced_points_replaces_nothing() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("frame.vtu");
     vtu::write(&path, &frame(3)).unwrap();
     let before = std::fs::read(&path).unwrap();
-    for (told, parts) in [(9, [0..4, 4..8]), (9, [0..5, 5..10]), (0, [0..1, 1..2])] {
-        let refused = write_parts(&path, &frame(10), told, &parts).unwrap_err();
-        assert!(matches!(refused, Error::Length { expected, .. } if expected == told), "{refused}");
+    for (announced, parts) in [(9, [0..4, 4..8]), (9, [0..5, 5..10]), (0, [0..1, 1..2])] {
+        let refused = write_parts(&path, &frame(10), announced, &parts).unwrap_err();
+        assert!(matches!(refused, Error::Length { expected, .. } if expected == announced), "{refused}");
     }
     let mut bad = frame(10);
     bad.position[7][0] = f64::NAN;

@@ -81,7 +81,7 @@ fn a_number_that_is_not_finite_keeps_the_old_manifest() {
 }
 
 #[test]
-fn what_is_no_manifest_of_this_form_is_told() {
+fn what_is_no_manifest_of_this_form_is_reported() {
     let dir = tempfile::tempdir().unwrap();
     assert!(matches!(Manifest::read(dir.path()), Err(Error::File { action: "read", .. })));
     let deep = "[".repeat(100_000);

@@ -63,7 +63,7 @@ fn headings_that_would_break_the_file_are_refused() {
 }
 
 #[test]
-fn a_row_that_is_being_written_is_left_out_and_a_damaged_one_is_told() {
+fn a_row_that_is_being_written_is_left_out_and_a_damaged_one_is_reported() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("history.csv");
     std::fs::write(&path, "step,time\n# -,s\n0,0.0\n1,0.2").unwrap();

@@ -48,8 +48,9 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
         let mut nodes = Nodes::map(model, &shape, points, times, halo)?;
         let field = FreeField::after(model, points, times, halo)?;
         field.drive(&mut nodes);
-        let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), times);
-        let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
+        let attachments =
+            StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), times);
+        let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo };
         let along = |(c, &guess): (usize, &f64)| match nodes.prescribed[c] {
             Some(prescribed) => prescribed,
             None if nodes.free[c] => guess,

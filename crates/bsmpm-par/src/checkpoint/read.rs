@@ -30,12 +30,12 @@ pub fn find(world: &SimpleCommunicator, wanted: Wanted<'_>) -> Result<(Option<Fo
     let first = world.rank() == 0;
     let looked = if first { look(wanted) } else { Ok((None, Vec::new())) };
     let (found, passed_over) = agree(world, looked)?;
-    let told =
-        |error: serde_json::Error| Refusal::new(exit::BUG, format!("a record cannot be told to all ranks: {error}"));
-    let record = agree(world, serde_json::to_vec(&found.as_ref().map(|found| &found.record)).map_err(told))?;
+    let refusal =
+        |error: serde_json::Error| Refusal::new(exit::BUG, format!("a record cannot be sent to all ranks: {error}"));
+    let record = agree(world, serde_json::to_vec(&found.as_ref().map(|found| &found.record)).map_err(refusal))?;
     let path = found.as_ref().map_or_else(Vec::new, |found| found.path.as_os_str().as_bytes().to_vec());
     let (record, path) = (broadcast(world, 0, record), broadcast(world, 0, path));
-    let record: Option<CheckpointRecord> = agree(world, serde_json::from_slice(&record).map_err(told))?;
+    let record: Option<CheckpointRecord> = agree(world, serde_json::from_slice(&record).map_err(refusal))?;
     Ok((record.map(|record| FoundCheckpoint { path: OsString::from_vec(path).into(), record }), passed_over))
 }
 

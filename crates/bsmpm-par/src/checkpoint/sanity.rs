@@ -40,8 +40,8 @@ fn finite<const D: usize>(points: &mut Points<D>) -> Result<(), String> {
         let (p, value) = infinite(&*column)?;
         Some((name, p, value))
     });
-    let told = |(name, p, value): (&str, usize, f64)| format!("{name} of point {} is {value}", points.id[p]);
-    found.map_or(Ok(()), |found| Err(told(found)))
+    let describe = |(name, p, value): (&str, usize, f64)| format!("{name} of point {} is {value}", points.id[p]);
+    found.map_or(Ok(()), |found| Err(describe(found)))
 }
 
 fn possible<const D: usize>(points: &Points<D>, grid: &Grid<D>, materials: usize) -> Result<(), String> {

@@ -82,11 +82,11 @@ pub struct CheckpointState {
     pub rigid_accelerations: Vec<Option<[f64; 3]>>,
     /// What the histories go on from.
     pub record: RecordState,
-    /// Strips of which it was told that they hold nothing and, their number added, that they have let go; drains and
-    /// inflows without ground, three times that number added.
+    /// Strips of which it was reported that they hold nothing and, their number added, that they have let go; drains
+    /// and inflows without ground, three times that number added.
     pub told_strips: BTreeSet<usize>,
-    /// Rigid bodies of which it was told that they came too fast (twice their number) or go into the soil (and one),
-    /// and behind those pairs that have met, and bodies that went through a face.
+    /// Rigid bodies of which it was reported that they came too fast (twice their number) or go into the soil (and
+    /// one), and behind those pairs that have met, and bodies that went through a face.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub told_rigid: BTreeSet<usize>,
     /// The step of the newest frame.
@@ -224,7 +224,8 @@ impl CheckpointState {
             Ok(_) => Err("it reads back otherwise".into()),
             Err(error) => Err(error.to_string()),
         });
-        let lost = |reason: String| format!("no checkpoint of step {}: its state cannot be told: {reason}", self.steps);
+        let lost =
+            |reason: String| format!("no checkpoint of step {}: its state cannot be written: {reason}", self.steps);
         whole.map_err(|reason| Refusal::new(exit::LEFT, lost(reason)))
     }
 

@@ -104,11 +104,11 @@ fn shapes(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<(&'static 
 /// fill one of its own. Collective.
 fn visible(world: &SimpleCommunicator, path: &Path) -> Result<(), Refusal> {
     let opened = std::fs::File::options().write(true).open(path);
-    let told = |error: std::io::Error| {
+    let failure = |error: std::io::Error| {
         let (rank, path) = (world.rank(), path.display());
         format!("rank {rank} cannot write {path}: {error}; the output directory must be one that all ranks share")
     };
-    agree(world, opened.map(|_| ()).map_err(|error| Refusal::new(exit::WRITE, told(error))))
+    agree(world, opened.map(|_| ()).map_err(|error| Refusal::new(exit::WRITE, failure(error))))
 }
 
 /// No number that is not finite ever reaches a file.

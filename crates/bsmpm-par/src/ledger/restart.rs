@@ -108,7 +108,7 @@ struct Tables {
 }
 
 impl Headings {
-    /// The tables as far as they were; one that is not there begins anew, which is told in the `news`.
+    /// The tables as far as they were; one that is not there begins again, which is reported in the `news`.
     fn resume(&self, directory: &Path, state: &CheckpointState, news: &mut Vec<String>) -> Result<Tables, Error> {
         let mut table = |name: &str, headings: &[TableColumn], mark: &TableMark| {
             let path = directory.join(name);

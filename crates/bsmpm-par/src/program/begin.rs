@@ -72,8 +72,8 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     let timers = Rc::new(Timers::default());
     let seam = (universe, petsc, choice);
     let mut scene = scene::<K, D>(seam, case, cut, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
-    let told = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
-    start.warn(told);
+    let warning = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
+    start.warn(warning);
     start.warn(crowded(&universe.world(), arguments.threads));
     let before = before(&start, &arguments.directory());
     let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;

@@ -61,23 +61,23 @@ fn is_later(change: &Difference) -> bool {
     number(&change.was).zip(number(&change.is)).is_none_or(|(was, is)| is > was)
 }
 
-/// How a run begins anew in whose directory there is no checkpoint: only if it was killed or stopped before it had one,
-/// so that nothing is deleted that had been kept.
-pub(super) fn anew(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -> Result<Beginning, Refusal> {
+/// How a run begins again in whose directory there is no checkpoint: only if it was killed or stopped before it had
+/// one, so that nothing is deleted that had been kept.
+pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -> Result<Beginning, Refusal> {
     let refused = |reason: String| Err(Refusal::new(exit::CHECKPOINT, reason));
     if let Some(bad) = passed_over.first() {
         return refused(bad.clone());
     }
     let Some(run) = run else { return Ok(Beginning::default()) };
     if let Some(gone) = &run.checkpoint {
-        return refused(format!("the checkpoint {gone}, which run.json names, is gone; --force starts the run anew"));
+        return refused(format!("the checkpoint {gone}, which run.json names, is gone; --force starts the run again"));
     }
     // One that was stopped has a checkpoint, unless that was before it had found its first state.
     let kept_nothing = [Some(exit::WRITE), Some(exit::STOPPED)].contains(&run.exit_code);
     if run.status != Status::Running && !kept_nothing {
-        let told = format!("{:?}", run.status).to_lowercase();
+        let ended = format!("{:?}", run.status).to_lowercase();
         return refused(format!(
-            "the run in the output directory has {told} and left no checkpoint to go on from; --force starts it anew"
+            "the run in the output directory has {ended} and left no checkpoint to go on from; --force starts it again"
         ));
     }
     futile(&run.restarts, 0)?;
@@ -115,7 +115,7 @@ fn unreadable(errors: &[Error]) -> String {
         |(key, RemovedWord { word, last, .. })| {
             format!(
                 "is of a case with {key} = \"{word}\", which was removed after {last}. Go on with that version, or start the \
-                 run anew with --force."
+                 run again with --force."
             )
         },
     )

@@ -1,4 +1,4 @@
-//! Which solver is wanted, and how PETSc is told.
+//! Which solver is wanted, and how PETSc is set up.
 
 use bsmpm::parallel::Symmetry;
 use petsc_rs::{Ksp, Matrix, PcFailure, Petsc, ShellPc, Vector};
@@ -105,7 +105,7 @@ impl Choice {
         if self.dissection { Some("dissection") } else { self.is_geometric().then_some("multigrid of splines") }
     }
 
-    /// Tells a solver; what the options say goes before. A general matrix preconditions a Krylov method.
+    /// Sets a solver up; what the options say goes before. A general matrix preconditions a Krylov method.
     pub(super) fn apply(&self, ksp: &mut Ksp<'_>, symmetry: Symmetry) -> petsc_rs::Result<()> {
         if let (Some(shell), Symmetry::Definite) = (self.shell(), symmetry) {
             ksp.set_type(&self.ksp)?;

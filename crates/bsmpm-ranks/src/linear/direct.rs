@@ -15,7 +15,7 @@ use petsc_rs::{PcFailure, ShellPc};
 
 /// Largest relative residual of a solution by a factor of single precision, which a quasi-Newton direction can do with.
 /// It is 1e-7 in dynamics; in statics about 1e-9 n/(1 - 2 nu), n the unknowns of a body in one piece. One right-hand
-/// side tells for all of a step: what it does not excite, it does not tell of.
+/// side shows for all of a step: what it does not excite, it does not show.
 const NEAR: f64 = 1e-2;
 
 /// What is known of the factor.
@@ -132,7 +132,7 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
     }
 
     /// The solution for the nodal right-hand side. The first one tries the factor: if it is not near, one of double
-    /// precision is made, whose solution must be: no reason of KSP's tells what a factor is worth.
+    /// precision is made, whose solution must be: no reason of KSP's says what a factor is worth.
     fn solve(&mut self) -> Result<(), SolveError> {
         self.back_substitute();
         if self.factor.standing == Standing::Tried {
@@ -163,8 +163,8 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
         dissection.solve(&self.matrix.halo.link(), own, rhs, solution);
     }
 
-    /// Tells KSP of a failure, and the caller why.
-    fn told(&mut self, outcome: Result<(), SolveError>, failure: PcFailure) -> Result<(), PcFailure> {
+    /// Reports to KSP a failure, and the caller why.
+    fn report(&mut self, outcome: Result<(), SolveError>, failure: PcFailure) -> Result<(), PcFailure> {
         outcome.map_err(|cause| {
             self.factor.cause = Some(cause);
             failure
@@ -175,7 +175,7 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
 impl<const D: usize, const C: usize> ShellPc for DissectionPc<'_, D, C> {
     fn set_up(&mut self) -> Result<(), PcFailure> {
         let outcome = self.factorise(Precision::Single);
-        self.told(outcome, PcFailure::ZeroPivot)
+        self.report(outcome, PcFailure::ZeroPivot)
     }
 
     fn apply(&mut self, r: &[f64], z: &mut [f64]) -> Result<(), PcFailure> {
@@ -187,6 +187,6 @@ impl<const D: usize, const C: usize> ShellPc for DissectionPc<'_, D, C> {
         unknowns.iter().zip(r).for_each(|(&component, value)| rhs[component] = *value);
         let outcome = self.solve();
         gather(unknowns, &self.factor.solution, z);
-        self.told(outcome, PcFailure::Other)
+        self.report(outcome, PcFailure::Other)
     }
 }

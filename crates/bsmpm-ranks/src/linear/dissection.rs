@@ -26,7 +26,7 @@ use factor::Factor;
 use plan::Plan;
 use reduction::TreeReduction;
 use std::sync::Mutex;
-use tree::{Desk, Elimination, Slate, Triangles};
+use tree::{Desk, Elimination, Scratch, Triangles};
 
 /// A factorisation of one rank's share of the matrix. Its memory is kept when the unknowns change, as they do in most
 /// steps of a flow.
@@ -36,7 +36,7 @@ pub struct Dissection {
     factor: Factor, // part after part
     reduction: TreeReduction,
     desks: Vec<Mutex<Desk>>, // of every thread
-    slate: Slate,
+    scratch: Scratch,
     work: Vec<f64>, // a vector by elimination numbers
     scale: f64,     // a power of two that the matrix is multiplied with
 }
@@ -98,14 +98,14 @@ impl Dissection {
     /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
     /// solution is right at all nodes of the window. Collective.
     pub fn solve(&mut self, link: &dyn Link, owned: impl Fn(usize) -> bool, rhs: &[f64], solution: &mut [f64]) {
-        let Self { plan, factor, reduction, slate, work, scale, .. } = self;
+        let Self { plan, factor, reduction, scratch, work, scale, .. } = self;
         let own = |component: usize| if owned(component) { rhs[component] * *scale } else { 0.0 };
         work.clear();
         work.extend(plan.order.iter().map(|&component| own(component as usize)));
         let triangles = Triangles { plan, factor };
-        triangles.forward(work, slate);
+        triangles.forward(work, scratch);
         reduction.solve(link, &mut work[plan.eliminated()..]);
-        triangles.backward(work, slate);
+        triangles.backward(work, scratch);
         solution.fill(0.0);
         plan.order.iter().zip(&*work).for_each(|(&component, value)| solution[component as usize] = *value);
     }

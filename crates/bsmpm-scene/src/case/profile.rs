@@ -14,7 +14,7 @@ pub struct Profile {
     pub ends: [[f64; 3]; 2],
     /// Places, the ends among them; one stands in the middle.
     pub count: usize,
-    /// What is told of each.
+    /// What is reported of each.
     pub quantities: Vec<ProfileQuantity>,
     /// s (quasi-static: pseudo-time)  when, increasing, within (0, end], hit exactly; empty: at the start, with
     /// every frame that is wanted, and at the end

@@ -4,7 +4,7 @@ use super::{MotionPath, Shares};
 use bsmpm::boundary::rigid::{Outline, Terrain};
 use bsmpm::schedule::between;
 
-/// A rigid body that pushes and rubs the soil.
+/// A rigid body that pushes the soil, with friction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rigid {
     /// what histories call it

@@ -29,7 +29,7 @@ pub struct Stage {
     pub strength_reduction: Option<f64>,
     /// Whether water that flows rests from here on.
     pub rests: bool,
-    /// Whether displacements that are told count from here.
+    /// Whether displacements that are reported count from here.
     pub resets_displacements: bool,
     /// Numbers of the histories that follow a point of what is placed.
     pub follows: Vec<usize>,
@@ -289,8 +289,8 @@ impl Case {
         self.materials_at(t).into_iter().zip(there).filter_map(|(named, is_there)| is_there.then_some(named))
     }
 
-    /// Whether a face, a strip or a rigid body rubs once the stages until the time `t` have begun.
-    pub fn rubs_at(&self, t: f64) -> bool {
+    /// Whether a face, a strip or a rigid body has friction once the stages until the time `t` have begun.
+    pub fn has_friction_at(&self, t: f64) -> bool {
         let acts = |what: Acting| self.acts_since(what, t).is_some();
         let footing = self.footing.iter().map(|footing| footing.contact);
         let strips = footing.chain(self.prescribed.iter().map(|prescribed| prescribed.contact)).enumerate();

@@ -199,7 +199,7 @@ impl<'a> PresetScene<'a> {
         })
     }
 
-    /// m  where what is moved as told comes to in the run, at every change of its speed
+    /// m  where what is moved as prescribed comes to in the run, at every change of its speed
     fn ways(&self, record: &Record) -> Vec<[f64; 2]> {
         let end = self.end();
         let mut moved = vec![[0.0; 2]];

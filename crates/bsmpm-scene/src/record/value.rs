@@ -227,15 +227,15 @@ impl ValueReader<'_, '_> {
 
     /// What is wrong with a unit that a column has in all of several rows, as the heading of a file gives it.
     fn heading(&self, rows: &[Node], column: usize, dimension: Dimension) -> Option<String> {
-        let told = |row: &Node| {
+        let unit_of = |row: &Node| {
             let Value::List(cells) = &row.value else { return None };
             let cell = cells.get(column)?;
             let Value::Text(text) = &cell.value else { return None };
             let unit = text.split_once(' ')?.1.to_owned();
             self.worded(cell, text, dimension).err().map(|message| (unit, message))
         };
-        let (unit, message) = told(rows.first().filter(|_| rows.len() > 1)?)?;
-        let is_of_all = rows[1..].iter().all(|row| told(row).is_some_and(|(other, _)| other == unit));
+        let (unit, message) = unit_of(rows.first().filter(|_| rows.len() > 1)?)?;
+        let is_of_all = rows[1..].iter().all(|row| unit_of(row).is_some_and(|(other, _)| other == unit));
         let number = column + 1;
         is_of_all.then(|| {
             format!(

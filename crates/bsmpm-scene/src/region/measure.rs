@@ -1,4 +1,4 @@
-//! The volume of a shape less others, of which no formula tells: vertical lines, the closer the rougher the shape.
+//! The volume of a shape less others, for which there is no formula: vertical lines, the closer the rougher the shape.
 
 use super::solid::{Section, SolidShape};
 
@@ -8,7 +8,7 @@ const ROUGH: f64 = 1e-5;
 /// How often a piece is halved at most.
 const HALVINGS: u32 = 8;
 
-/// Pieces in which a surface is looked at first, beside those between its corners: its walls may stand askew.
+/// Pieces in which a surface is looked at first, beside those between its corners: its walls may be inclined.
 const PARTS: usize = 8;
 
 /// The same where it has more corners than that.

@@ -161,7 +161,7 @@ mod tests {
             assert!((found - top(at[0], at[1])).abs() < 1e-12 && base == 0.5);
         }
         assert_eq!((raster.vertical([12.0, 0.0]), raster.vertical([10.1, -1.1])), (None, None));
-        // The mean of x is 11, of y .5, of x y 5.5.
+        // The mean of x is 11, of y 0.5, of x y 5.5.
         assert!((raster.volume() - 6.0 * (2.5 + 1.1 - 0.1 + 0.05 * 5.5)).abs() < 1e-12);
         let slide = Raster::new(&rows(|x, y| top(x, y) + (x - 10.5).max(0.0)), 0.0).unwrap().on(raster).unwrap();
         assert_eq!(slide.vertical([10.2, 0.0]), None);

@@ -408,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn two_cuboids_that_share_lines_are_told_apart_from_two_that_overlap() {
+    fn two_cuboids_that_share_lines_are_reported_apart_from_two_that_overlap() {
         let spans =
             [[0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [1.0, 2.0], [1.0, 3.0], [2.0, 3.0]].map(|ends| ends.map(|x| x / 3.0));
         let one = [[1.0, 2.0], [0.0, 2.0], [1.0, 3.0]].map(|ends: [f64; 2]| ends.map(|x| x / 3.0));

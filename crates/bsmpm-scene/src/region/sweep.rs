@@ -72,7 +72,7 @@ pub(crate) fn intervals<'a>(edges: impl IntoIterator<Item = &'a Edge>, shapes: u
     found
 }
 
-/// Gives `visit` every slice of the window that is filled, as `filled` tells from inside which shapes it is. Edges
+/// Gives `visit` every slice of the window that is filled, as `filled` says from inside which shapes it is. Edges
 /// above the window may be missing; those below may not.
 pub(crate) fn sweep(
     edges: &[Edge],

@@ -64,7 +64,7 @@ pub(super) static INFLOW: Table = Table {
     header: "[[inflow]]",
     doc: "Water that is put in through a segment of a body's surface (3-D: a rectangle or disc), with which it goes",
     keys: &[
-        key("name", Name, Optional, "what it is called where it is told of, and by stages"),
+        key("name", Name, Optional, "its name in the log, in results and in stages"),
         key(
             "face",
             Choice(Side::WORDS),

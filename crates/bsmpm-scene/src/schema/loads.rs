@@ -65,7 +65,7 @@ pub(super) static FOOTING: Table = Table {
         ),
         key(
             "interface",
-            ChoiceOr(Base::WORDS, &RUBS),
+            ChoiceOr(Base::WORDS, &FRICTIONAL),
             Default("\"smooth\""),
             "\"smooth\" fixes the normal component, \"rough\" all components; or a table: frictional contact",
         )
@@ -109,7 +109,7 @@ pub(super) static PRESCRIBED: Table = Table {
         ),
         key(
             "components",
-            ChoiceOr(Components::WORDS, &RUBS),
+            ChoiceOr(Components::WORDS, &FRICTIONAL),
             Default("\"all\""),
             "which components are prescribed; or a table, of a segment: frictional contact",
         ),
@@ -122,7 +122,7 @@ pub(super) static PRESCRIBED: Table = Table {
     ],
 };
 
-static RUBS: Table = Table {
+static FRICTIONAL: Table = Table {
     header: "STRIP = { friction_coefficient, separates }",
     doc: "A strip in frictional contact (Coulomb) with the material on one side of it, which may separate from it",
     keys: &[

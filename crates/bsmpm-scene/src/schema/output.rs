@@ -148,7 +148,7 @@ pub(super) static PROFILE: Table = Table {
         key("from", Vector(In::Length, Range::ANY), Required, "where the line begins"),
         key("to", Vector(In::Length, Range::ANY), Required, "where it ends"),
         key("count", Count(1, 1000), Required, "places, equally spaced, the ends among them; one: the middle"),
-        key("quantities", Choices(ProfileQuantity::WORDS), Required, "what is told of each place"),
+        key("quantities", Choices(ProfileQuantity::WORDS), Required, "what is reported of each place"),
         key(
             "times",
             List(In::Time, Range::POSITIVE),

@@ -10,7 +10,7 @@ pub(super) static STAGE: Table = Table {
     doc: "What changes at a time, between two steps: bodies are removed (excavation) and placed (lifts of an embankment), \
           loads and supports act from there or no longer, faces of the grid change, and materials follow another law or lose strength",
     keys: &[
-        key("name", Text(64), Optional, "what it is called where it is told of"),
+        key("name", Text(64), Optional, "its name in the log and in results"),
         key("at", Quantity(In::Time, Range::POSITIVE), Required, "when it begins; a step ends there"),
         key("remove", Names, Optional, "names of the bodies that are taken away"),
         key(
@@ -46,7 +46,7 @@ pub(super) static STAGE: Table = Table {
             "reset_displacements",
             Flag,
             Default("false"),
-            "whether displacements that are told count from here, those of the footing and of rigid bodies, too",
+            "whether displacements that are reported count from here, those of the footing and of rigid bodies, too",
         ),
     ],
     exclusive: &[],

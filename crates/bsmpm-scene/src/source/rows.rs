@@ -31,9 +31,9 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     references.sort_by_key(|reference: &FileReference<'_>| reference.span.start);
     let (mut whole, mut from) = (String::with_capacity(text.len()), 0);
     for FileReference { span, file, along } in references {
-        let told = |error: Error| Error::new(error.kind(), of_file(file, &error.to_string()));
+        let in_file = |error: Error| Error::new(error.kind(), of_file(file, &error.to_string()));
         whole.push_str(&text[from..span.start]);
-        let bytes = read(&folder.join(file)).map_err(told)?;
+        let bytes = read(&folder.join(file)).map_err(in_file)?;
         let found = if stl::is_binary(&bytes) {
             stl::triangles(&bytes)
         } else if file.to_ascii_lowercase().ends_with(".stl") && bytes.contains(&0) {
@@ -41,7 +41,7 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
         } else {
             text_rows(bytes, (along, axes))
         };
-        whole.push_str(&found.map_err(told)?);
+        whole.push_str(&found.map_err(in_file)?);
         from = span.end;
     }
     whole.push_str(&text[from..]);
@@ -231,8 +231,8 @@ mod tests {
     #[test]
     fn ascii_grids_are_rows_of_the_middles_of_their_cells() {
         let header = "ncols 2\nnrows 2\nxllcorner 10\nyllcorner 0\ncellsize 2\nNODATA_value -9999\n";
-        let told = grid(&format!("{header}1 2\n3 4\n")).unwrap();
-        assert_eq!(told, "[[11.0,3.0,1.0],[13.0,3.0,2.0],[11.0,1.0,3.0],[13.0,1.0,4.0],]");
+        let parsed = grid(&format!("{header}1 2\n3 4\n")).unwrap();
+        assert_eq!(parsed, "[[11.0,3.0,1.0],[13.0,3.0,2.0],[11.0,1.0,3.0],[13.0,1.0,4.0],]");
         let message = |text: &str| grid(text).unwrap_err().to_string();
         assert_eq!(message(&format!("{header}1 2\n3 -9999\n")), "row 2, column 2: no data: fill it, or cut the grid");
         assert_eq!(message(&format!("{header}1 2\n3\n")), "3 heights, not ncols x nrows = 4");
@@ -247,8 +247,8 @@ mod tests {
         for text in ["0 1.5\n0.1 -2\n", "# a record\n0,1.5\n\n.1, -2.0 # end\n", "\u{feff}0;1.5\r\n1e-1;-2\r\n"] {
             assert_eq!(rows(text, (None, PLANE)).unwrap(), plain);
         }
-        let told = rows("t [s], a (cm/s2)\n0.02, 3\n", (Some("x"), PLANE)).unwrap();
-        assert_eq!(told, "[[\"0.02 s\",\"3.0 cm/s2\",0.0],]");
+        let parsed = rows("t [s], a (cm/s2)\n0.02, 3\n", (Some("x"), PLANE)).unwrap();
+        assert_eq!(parsed, "[[\"0.02 s\",\"3.0 cm/s2\",0.0],]");
         assert_eq!(rows("t a\n1 2", (Some("y"), PLANE)).unwrap(), "[[1.0,0.0,2.0],]");
         assert_eq!(rows("1 2", (Some("y"), &["x", "y", "z"])).unwrap(), "[[1.0,0.0,2.0,0.0],]");
     }

@@ -10,11 +10,11 @@ const STL_TRIANGLE: usize = 50;
 /// Whether bytes are binary STL: as many as its number of triangles says, whatever the heading (some begin with
 /// `solid`, as the text format does).
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
-    told(bytes).is_some_and(|number| bytes.len() as u64 == length(number))
+    announced(bytes).is_some_and(|number| bytes.len() as u64 == length(number))
 }
 
-/// Triangles that the heading of binary STL tells of.
-fn told(bytes: &[u8]) -> Option<u32> {
+/// Triangles that the heading of binary STL announces.
+fn announced(bytes: &[u8]) -> Option<u32> {
     bytes.get(STL_HEADING - 4..STL_HEADING).and_then(|four| four.try_into().ok()).map(u32::from_le_bytes)
 }
 
@@ -25,9 +25,9 @@ fn length(number: u32) -> u64 {
 
 /// Why bytes that are no text are not binary STL either.
 pub(super) fn broken(bytes: &[u8]) -> Error {
-    let message = match told(bytes) {
+    let message = match announced(bytes) {
         Some(number) => format!(
-            "binary STL of {} bytes, whose heading tells of {number} triangles and so of {} bytes: it is cut off or damaged",
+            "binary STL of {} bytes, whose heading announces {number} triangles and so {} bytes: it is cut off or damaged",
             bytes.len(),
             length(number)
         ),
@@ -104,7 +104,7 @@ mod tests {
         bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
         assert_eq!(triangles(&bytes).unwrap_err().to_string(), "triangle 1 has a corner that is no number");
         let cut =
-            "binary STL of 133 bytes, whose heading tells of 1 triangles and so of 134 bytes: it is cut off or damaged";
+            "binary STL of 133 bytes, whose heading announces 1 triangles and so 134 bytes: it is cut off or damaged";
         assert_eq!(broken(&bytes[..133]).to_string(), cut);
         assert_eq!(broken(&bytes[..80]).to_string(), "binary STL of 80 bytes: cut off in its heading of 84");
         let message = |text: &str| facets(text).unwrap_err().to_string();

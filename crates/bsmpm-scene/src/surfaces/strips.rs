@@ -14,7 +14,7 @@ use bsmpm::tensor::Vector;
 /// to step, so that all slips together stay at p/beta: measured on the footing, 1e2 to 1e5 give the same pressure.
 const PENALTY: f64 = 1e4;
 /// Part of it that points have which rub and let go: with all of it most steps that change what they do are cut, and a
-/// tenth gives the same forces within .2 %.
+/// tenth gives the same forces within 0.2 %.
 const RUBBING: f64 = 0.1;
 /// Points of a strip in every cell that it crosses.
 const HELD: usize = 4;

@@ -31,7 +31,7 @@ pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mu
         );
         record.error(key, message, report);
     }
-    if !times.iter().any(|t| case.rubs_at(*t)) && !followed().any(|named| named.material.yields()) {
+    if !times.iter().any(|t| case.has_friction_at(*t)) && !followed().any(|named| named.material.yields()) {
         report.warn(format!("{}: no material has strength: it does nothing", record.path_of(key)));
     }
 }

@@ -97,7 +97,7 @@ impl FrameField {
 }
 
 choice! {
-    /// What a profile tells at its places.
+    /// What a profile reports at its places.
     pub enum ProfileQuantity {
         /// Displacement (m).
         Displacement = "displacement",

@@ -212,13 +212,13 @@ fn rain_that_lifts_and_walls_that_leak_are_warned_of() {
             changes.iter().fold(include_str!("seeping.toml").to_owned(), |text, (was, is)| text.replace(was, is));
         bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
     };
-    let told = |warnings: &[String], of: &str| warnings.iter().any(|told| told.contains(of));
+    let reports = |warnings: &[String], of: &str| warnings.iter().any(|warning| warning.contains(of));
     let (lifts, gap, wall) = ("inflow.0: 2.7", "a gap between bodies", "material.tight: a wall of it");
     let whole = case(&[]);
-    assert!(![lifts, gap, wall].into_iter().any(|of| told(&whole, of)), "{whole:?}");
-    assert!(told(&case(&[("runoff = true\n", "")]), lifts));
+    assert!(![lifts, gap, wall].into_iter().any(|of| reports(&whole, of)), "{whole:?}");
+    assert!(reports(&case(&[("runoff = true\n", "")]), lifts));
     let steep = [("alpha = 2.0", "alpha = 100.0")];
-    assert!(told(&case(&steep), "100 times less than a cell") && !told(&whole, "times less than a cell"));
+    assert!(reports(&case(&steep), "100 times less than a cell") && !reports(&whole, "times less than a cell"));
     let clay = "box = { lower = [0.0, 0.0], upper = [4.0, 2.0] }\npoints_per_cell = 3\n";
     let apart = |x: f64| {
         format!(
@@ -226,12 +226,12 @@ fn rain_that_lifts_and_walls_that_leak_are_warned_of() {
              box = {{ lower = [{x}, 0.0], upper = [4.0, 2.0] }}\npoints_per_cell = 3\n"
         )
     };
-    assert!(told(&case(&[(clay, &apart(1.5))]), gap));
+    assert!(reports(&case(&[(clay, &apart(1.5))]), gap));
     let held = apart(1.5)
         + "[[body]]\nmaterial = \"tight\"\nbox = { lower = [1.0, 0.0], upper = [1.5, 2.0] }\npoints_per_cell = 3\n";
-    assert!(told(&case(&[(clay, &held)]), wall));
+    assert!(reports(&case(&[(clay, &held)]), wall));
     let finer = ("cell  = \"1 m\"", "cell = 0.25");
-    assert!(!told(&case(&[(clay, &held), finer]), wall) && !told(&case(&[(clay, &apart(1.5)), finer]), gap));
+    assert!(!reports(&case(&[(clay, &held), finer]), wall) && !reports(&case(&[(clay, &apart(1.5)), finer]), gap));
 }
 
 /// Ground above the water table that stays full, and a step of the table that no point may see.
@@ -243,15 +243,15 @@ fn water_that_hangs_and_steps_that_are_narrow_are_warned_of() {
             .replace("permeability   = \"1e-9 m/s\"", &format!("permeability = \"1e-9 m/s\"\n{more}"));
         bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
     };
-    let told = |warnings: &[String], of: &str| warnings.iter().any(|told| told.contains(of));
+    let reports = |warnings: &[String], of: &str| warnings.iter().any(|warning| warning.contains(of));
     let hangs = "up to 5.00 m of it are above the water table";
-    assert!(told(&case("level = 10.0", ""), hangs));
-    assert!(!told(&case("level = 15.0", ""), "above the water table"));
+    assert!(reports(&case("level = 10.0", ""), hangs));
+    assert!(!reports(&case("level = 15.0", ""), "above the water table"));
     let retention = "retention = { alpha = 0.1, n = 2.0, residual = 0.1 }";
-    assert!(!told(&case("level = 10.0", retention), "above the water table"));
+    assert!(!reports(&case("level = 10.0", retention), "above the water table"));
     let step = |width: f64| format!("line = [[0, 15], [30, 15], [{}, 5], [60, 5]]", 30.0 + width);
-    assert!(told(&case(&step(0.5), retention), "from x = 30 to 30.5 is narrower than a cell, 1"));
-    assert!(!told(&case(&step(2.0), retention), "narrower than a cell"));
+    assert!(reports(&case(&step(0.5), retention), "from x = 30 to 30.5 is narrower than a cell, 1"));
+    assert!(!reports(&case(&step(2.0), retention), "narrower than a cell"));
 }
 
 /// The flux in the cell of a surface, where it jumps; deeper it does not.
@@ -262,9 +262,10 @@ fn a_flux_next_to_a_surface_is_warned_of() {
         let text = text + &format!("\n[[history]]\nquantity = \"flux\"\nat = {at}\n");
         bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
     };
-    let told = |warnings: &[String]| warnings.iter().any(|told| told.contains("less than a cell from a surface"));
-    assert!(told(&case("[10.0, 14.2]")) && told(&case("[29.8, 9.6]")));
-    assert!(!told(&case("[10.0, 13.5]")) && !told(&case("[0.1, 0.1]")), "a face of the grid is no surface");
+    let reports =
+        |warnings: &[String]| warnings.iter().any(|warning| warning.contains("less than a cell from a surface"));
+    assert!(reports(&case("[10.0, 14.2]")) && reports(&case("[29.8, 9.6]")));
+    assert!(!reports(&case("[10.0, 13.5]")) && !reports(&case("[0.1, 0.1]")), "a face of the grid is no surface");
 }
 
 /// Ground one cell across under a load of half its stiffness, of which averages leave a way to go sideways.
@@ -275,9 +276,9 @@ fn ground_one_cell_across_under_a_large_load_is_warned_of() {
         let text = more.iter().fold(text, |text, (from, to)| text.replace(from, to));
         bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
     };
-    let told = |warnings: &[String]| warnings.iter().any(|told| told.contains("one cell across"));
+    let reports = |warnings: &[String]| warnings.iter().any(|warning| warning.contains("one cell across"));
     let narrow = [("[0.1, 1.0]", "[0.05, 1.0]"), ("at       = [0.05, 1.0]", "at       = [0.025, 1.0]")];
-    assert!(told(&case(&narrow)) && !told(&case(&[])));
-    assert!(!told(&case(&[&narrow[..], &[("consistent-f-bar", "none")]].concat())));
-    assert!(!told(&case(&[&narrow[..], &[("-500 kPa", "-200 kPa")]].concat())));
+    assert!(reports(&case(&narrow)) && !reports(&case(&[])));
+    assert!(!reports(&case(&[&narrow[..], &[("consistent-f-bar", "none")]].concat())));
+    assert!(!reports(&case(&[&narrow[..], &[("-500 kPa", "-200 kPa")]].concat())));
 }

@@ -263,7 +263,7 @@ pub const STRIPS: &[Row] = &[
     row(SHAKEN, "[[0.1, 1.0]]", "shaking.acceleration", "found a list of 2"),
     row(SHAKEN, "[[0.1, \"1 m\", 0.0]]", "shaking.acceleration", "`m` is a unit of length"),
     row(SHAKEN, "{ file = \"kobe.csv\" }", "shaking.acceleration", "found a table: a file is named in braces"),
-    // Points of the block are .25 m apart, those of sand .167 m and of clay .25 m.
+    // Points of the block are 0.25 m apart, those of sand 0.167 m and of clay 0.25 m.
     row("from = [1.0, 2.5]\nto   = [\"2 m\", 2.5]", "from = [1.25, 2.63]\nto = [1.75, 2.63]", "footing.from", NOBODY),
     row("from = [2.5, 2.5]\nto   = [3.0, 2.5]", "from = [2.5, 2.63]\nto = [3.0, 2.63]", "prescribed.1.from", NOBODY),
     row("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "from = [0.0, 1.4]\nto = [1.0, 1.4]", "traction.0.from", NOBODY),

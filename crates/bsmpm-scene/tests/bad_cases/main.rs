@@ -95,12 +95,12 @@ fn rules_between_keys() {
 }
 
 #[test]
-fn what_two_groups_of_keys_forbid_is_told_once() {
+fn what_two_groups_of_keys_forbid_is_reported_once() {
     let sphere = "sphere = { centre = [3, 1.5, 2.0]";
     let text = SOLID.replacen(sphere, &format!("disc = {{ centre = [0.4, 1.5, 1.0], radius = 0.3 }}\n{sphere}"), 1);
     let errors = Case::from_text("case.toml", &text, &[]).expect_err("a disc and a sphere");
-    let told = errors.iter().filter(|error| error.message.contains("is given too")).count();
-    assert_eq!(told, 1, "{errors:?}");
+    let reported = errors.iter().filter(|error| error.message.contains("is given too")).count();
+    assert_eq!(reported, 1, "{errors:?}");
 }
 
 #[test]
@@ -180,9 +180,9 @@ fn faces_that_absorb() {
 }
 
 #[test]
-fn what_is_told_of_parts_lines_and_places() {
-    verify_all(DYNAMIC, rows::TOLD);
-    verify_all(STATIC, rows::TOLD_QUASI_STATIC);
+fn what_is_reported_of_parts_lines_and_places() {
+    verify_all(DYNAMIC, rows::REPORTED);
+    verify_all(STATIC, rows::REPORTED_QUASI_STATIC);
 }
 
 #[test]

@@ -428,7 +428,8 @@ fn take((part, by, says): (&str, &str, &str)) -> Result<(), String> {
     let case = Case::from_text("case.toml", &DYNAMIC.replacen(part, by, 1), &[]);
     let mut warnings = case.map_err(|errors| format!("`{by}`: {errors:#?}"))?.warnings;
     let base = Case::from_text("case.toml", DYNAMIC, &[]).expect("a valid case").warnings;
-    warnings.retain(|told| !base.contains(told));
-    let fits = if says.is_empty() { warnings.is_empty() } else { warnings.iter().any(|told| told.contains(says)) };
+    warnings.retain(|warning| !base.contains(warning));
+    let fits =
+        if says.is_empty() { warnings.is_empty() } else { warnings.iter().any(|warning| warning.contains(says)) };
     if fits { Ok(()) } else { Err(format!("`{by}`: `{says}` is not what is warned of: {warnings:?}")) }
 }

@@ -49,7 +49,7 @@ const WRONG: &[Wrong] = &[
     ),
     dynamic("friction as an angle", &[("bottom = \"fixed\"", "bottom = { friction_coefficient = \"20 deg\" }")]),
     dynamic(
-        "a face that rubs and is fixed",
+        "a face with friction that is fixed",
         &[("bottom = \"fixed\"", "bottom = { friction_coefficient = 0.3, type = \"fixed\" }")],
     ),
     at_rest("a body that only friction would hold", &[("bottom = \"fixed\"", "bottom = \"contact\"")]),
@@ -150,17 +150,17 @@ const WRONG: &[Wrong] = &[
     wet("the outflow of a drain that there is none of", &[("drain    = \"base\"", "drain    = \"bas\"")]),
     wet("water in linear cells", &[("\"quadratic\"", "\"linear\"")]),
     wet("water and Broyden's update", &[("\"auto\"", "\"broyden\"")]),
-    wet("water beside a face that rubs", &[("right  = \"roller\"", "right  = { friction_coefficient = 0.3 }")]),
+    wet("water beside a face with friction", &[("right  = \"roller\"", "right  = { friction_coefficient = 0.3 }")]),
 ];
 
 /// The page: of every wrong case what was changed, and what the program says.
 fn page() -> String {
     let mut page = String::from(
         "# Wrong cases\n\nWhat the program says of wrong soils, contacts, loads, motions, stages, histories and water: the first \
-         error of each, as it\nis printed, with exit code 65. All errors of a case are told at once. The toml block is what \
+         error of each, as it\nis printed, with exit code 65. All errors of a case are reported at once. The toml block is what \
          was put into a valid case\n(`tests/full.toml` of `bsmpm-scene`, `static.toml` and `seeping.toml` of its \
          `tests/bad_cases`). Made by the\ntest \
-         `page`, which compares; `BSMPM_RENEW=1 cargo test -p bsmpm-scene --test bad_cases page` writes it anew.\n",
+         `page`, which compares; `BSMPM_RENEW=1 cargo test -p bsmpm-scene --test bad_cases page` writes it again.\n",
     );
     for wrong in WRONG {
         let mut text = wrong.base.to_owned();

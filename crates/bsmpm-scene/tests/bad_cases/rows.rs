@@ -320,7 +320,7 @@ pub const RULES: &[Row] = &[
 ];
 
 /// Parts of histories, lines, surfaces, profiles and fields of frames.
-pub const TOLD: &[Row] = &[
+pub const REPORTED: &[Row] = &[
     row("body     = \"fill\"", "body = \"fil\"", "history.7.body", "did you mean `fill`?"),
     row(
         "body     = \"fill\"",
@@ -366,7 +366,7 @@ pub const TOLD: &[Row] = &[
 ];
 
 /// Profiles in a quasi-static case.
-pub const TOLD_QUASI_STATIC: &[Row] = &[row(
+pub const REPORTED_QUASI_STATIC: &[Row] = &[row(
     "[output]",
     "[[profile]]\nname = \"a\"\nfrom = [0, 0]\nto = [1, 1]\ncount = 2\nquantities = [\"velocity\"]\n[output]",
     "profile.0.quantities",

@@ -286,7 +286,7 @@ fn thin_walls_are_warned_of() {
         let wall = format!("polygon = [[{inner}, 1.0], [{outer}, 1.0], [{outer}, 2.0], [{inner}, 2.0]]");
         let text = format!("{}revolve = {{ {wall}, about = [1.0, 1.5] }}\n{}", &base[..at], &base[end..]);
         let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
-        warnings.iter().any(|told| told.starts_with("body.3") && told.contains(of))
+        warnings.iter().any(|warning| warning.starts_with("body.3") && warning.contains(of))
     };
     let (factor, alone) = ("it is too thin for its points", "where one point stands for all");
     assert!(warned([0.8, 0.803], factor) && !warned([0.8, 0.95], factor));
@@ -300,13 +300,13 @@ fn the_default_match_of_a_cone_is_warned_of_outside_of_plane_strain() {
         let law = format!("model = \"drucker-prager\"\nfriction_angle = 30\ncohesion = 1e3{given}\n");
         let text = base.replacen("model   = \"elastic\"", &law, 1);
         let warnings = bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings;
-        warnings.into_iter().find(|told| told.contains("mohr-coulomb's"))
+        warnings.into_iter().find(|warning| warning.contains("mohr-coulomb's"))
     };
     for base in [super::SOLID, super::ROUND] {
-        let told = warned(base, "").expect("a warning");
+        let reported = warned(base, "").expect("a warning");
         // (3 - sin 30)/sqrt(13) and (3 + sin 30)/sqrt(13).
-        assert!(told.contains("material.soil.fit: not given") && told.contains("69.3 %"), "{told}");
-        assert!(told.contains("97.1 % in extension") && told.contains("give \"outer\""), "{told}");
+        assert!(reported.contains("material.soil.fit: not given") && reported.contains("69.3 %"), "{reported}");
+        assert!(reported.contains("97.1 % in extension") && reported.contains("give \"outer\""), "{reported}");
         for word in ["outer", "inner", "plane-strain"] {
             assert_eq!(warned(base, &format!("\nmatch = \"{word}\"")), None);
         }
@@ -315,7 +315,7 @@ fn the_default_match_of_a_cone_is_warned_of_outside_of_plane_strain() {
     assert!(flat.contains("in plane strain this cone has"), "{flat}");
 }
 
-/// Every triangle of the surface turned; of one that is not the row of open surfaces tells.
+/// Every triangle of the surface turned; of one that is not the row of open surfaces reports.
 #[test]
 fn a_surface_that_is_turned_inside_out_as_a_whole_is_taken_and_warned_of() {
     let base = super::SOLID;
@@ -325,7 +325,8 @@ fn a_surface_that_is_turned_inside_out_as_a_whole_is_taken_and_warned_of() {
         .replacen("[7, 3, 4, 5, 5, 4, 5, 3, 6]", "[7, 3, 4, 5, 3, 6, 5, 5, 4]", 1)
         .replacen("[5, 3, 4, 5, 3, 6, 5, 5, 4]", "[5, 3, 4, 5, 5, 4, 5, 3, 6]", 1);
     let case = |text: &str| bsmpm_scene::Case::from_text("case.toml", text, &[]).expect("a valid case");
-    let warned = |text: &str| case(text).warnings.iter().any(|told| told.contains("triangles: all of them are turned"));
+    let warned =
+        |text: &str| case(text).warnings.iter().any(|warning| warning.contains("triangles: all of them are turned"));
     assert!(warned(&turned) && !warned(base));
     assert_eq!(case(&turned).bodies[5].region, case(base).bodies[5].region);
 }

@@ -1,4 +1,4 @@
-//! Texts that are no case at all, and how errors are told (rows I01 to I07, I20, I21).
+//! Texts that are no case at all, and how errors are reported (rows I01 to I07, I20, I21).
 
 use super::{DYNAMIC, STATIC};
 use bsmpm_scene::{Case, Error, MAX_BYTES, Place};
@@ -65,7 +65,7 @@ fn all_errors_come_at_once_in_the_order_of_the_file() {
     let keys: Vec<&str> = errors.iter().map(|error| error.key.as_str()).collect();
     assert_eq!(keys, ["analysis.dt", "material.sand.poisson", "material.sand.poison", "material.clay.poisson"]);
     let errors = refuse(b"a = x\nb = y\nc = \"");
-    assert_eq!(errors.len(), 3, "every line with a syntax error is told: {errors:#?}");
+    assert_eq!(errors.len(), 3, "every line with a syntax error is reported: {errors:#?}");
 }
 
 #[test]

@@ -78,8 +78,8 @@ fn refuses(text: &str, path: &str, says: &str, line: Option<usize>) {
         let about = error.key == path || error.key.strip_prefix(path).is_some_and(|item| item.starts_with('.'));
         placed && about && error.message.contains(says)
     };
-    let told: Vec<String> = errors.iter().map(ToString::to_string).collect();
-    assert!(errors.iter().any(fits), "{path}, line {line:?}: ..{says}.. is not among {told:#?}");
+    let reported: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    assert!(errors.iter().any(fits), "{path}, line {line:?}: ..{says}.. is not among {reported:#?}");
 }
 
 /// The text without an entry, and without the comma that it leaves in an inline table.

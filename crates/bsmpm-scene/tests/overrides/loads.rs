@@ -43,7 +43,7 @@ fn what_lies_on_the_ground_has_no_part_in_the_stress_at_the_start() {
     let above = ["footing.from=[1, 2]", "footing.to=[2, 2]"];
     assert!(!valid(FULL, &above).footing.unwrap().rests);
     let hangs = doubts(FULL, &["initial.equilibrium=plastic"]);
-    assert!(hangs.iter().any(|told| told.contains("prescribed.1: it lies on the ground")), "{hangs:?}");
+    assert!(hangs.iter().any(|warning| warning.contains("prescribed.1: it lies on the ground")), "{hangs:?}");
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn strips_hold_and_load_a_quasi_static_body() {
 
 #[test]
 fn strips_and_loads_start_within_half_a_spacing_of_points() {
-    // The block's points are .25 m apart: its top is at 2.5 m. A strip may start with a part of it beyond the body.
+    // The block's points are 0.25 m apart: its top is at 2.5 m. A strip may start with a part of it beyond the body.
     let near = ["footing.from=[1.25, 2.62]", "footing.to=[1.75, 2.62]"];
     assert!(doubts(FULL, &near).is_empty());
     assert!(doubts(FULL, &["footing.from=[0.9, 2.5]", "footing.to=[2.3, 2.5]"]).is_empty());
@@ -113,7 +113,7 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
     let (line, _, largest) = push(hole);
     assert_eq!(line, LoadedLine::Circle { center: [2.75, 2.0], radius: 0.1 });
     assert!((largest - 11e3).abs() < 1e-9, "at its lowest place: {largest}");
-    for (traction, told) in [
+    for (traction, reported) in [
         ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "bodies lie on both sides of it"),
         ("circle = { centre = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "no part of it is inside the grid"),
         ("circle = { centre = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "no body is at"),
@@ -126,7 +126,7 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
         ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = [0, 1]", "expected"),
     ] {
         let message = format!("{:?}", with(traction).expect_err("refused"));
-        assert!(message.contains(told), "{traction}: {message}");
+        assert!(message.contains(reported), "{traction}: {message}");
     }
 }
 
@@ -158,7 +158,7 @@ fn a_pressure_acts_on_what_stages_leave_free() {
 
 /// Half of a rigid body on half of the ground, and one that never comes to it.
 #[test]
-fn rigid_bodies_that_faces_cut_and_that_stay_outside_are_told() {
+fn rigid_bodies_that_faces_cut_and_that_stay_outside_are_reported() {
     let with = |rigid: &str| {
         let text = format!(
             "geometry = 'plane-strain'\nanalysis = {{ type = 'quasi-static', steps = 4 }}\n\
@@ -173,14 +173,14 @@ fn rigid_bodies_that_faces_cut_and_that_stay_outside_are_told() {
     let push = "free = ['y']\nforce = [0, -1.0]";
     let cut = "lies on both sides of left";
     let away = "does not come into it";
-    for (rigid, told) in [
+    for (rigid, reported) in [
         (format!("polygon = [[-1, 2], [1, 2], [1, 3], [-1, 3]]\n{push}"), cut),
         (format!("circle = {{ centre = [0, 3], radius = 1 }}\n{push}"), cut),
         ("polygon = [[5, 2], [6, 2], [6, 3], [5, 3]]".to_owned(), away),
         (format!("polygon = [[6, 2], [7, 2], [7, 3], [6, 3]]\n{push}"), away),
     ] {
         let found = with(&rigid);
-        assert!(found.contains(told), "{rigid}: {found}");
+        assert!(found.contains(reported), "{rigid}: {found}");
     }
     for rigid in [
         format!("polygon = [[0, 2], [1, 2], [1, 3], [0, 3]]\n{push}"),
@@ -318,38 +318,38 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
         box = { lower = [0, 0], upper = [4, 3] }
         points_per_cell = 2
     "#;
-    let told = |set: &[&str], of: &str| {
+    let reports = |set: &[&str], of: &str| {
         let warnings = valid(base, set).warnings;
         let found: Vec<_> =
-            warnings.iter().filter(|told| told.contains("faces that absorb holds the ground")).collect();
-        assert!(found.len() <= 1 && found.iter().all(|told| told.starts_with(of)), "{found:?}");
+            warnings.iter().filter(|warning| warning.contains("faces that absorb holds the ground")).collect();
+        assert!(found.len() <= 1 && found.iter().all(|warning| warning.starts_with(of)), "{found:?}");
         !found.is_empty()
     };
     let strip = |push: &str| format!("traction.0={{ from = [0, 3], to = [2, 3], {push} }}");
     let (lasting, shear) = (strip("stress = [0, \"-20 kPa\"]"), strip("stress = [1e3, 0], ramp = 0.1"));
     let back = strip("stress = [0, -1e3], amplitude = [[0.1, 1], [0.2, 0]]");
-    assert!(told(&[&lasting], "traction.0") && !told(&[&shear], "") && !told(&[&back], ""));
-    assert!(told(&[&strip("pressure = 1e3")], "traction.0") && !told(&[&lasting, "boundary.bottom=fixed"], ""));
-    assert!(told(&[&shear, "boundary.left=absorbing", "boundary.right=absorbing"], "traction.0"));
+    assert!(reports(&[&lasting], "traction.0") && !reports(&[&shear], "") && !reports(&[&back], ""));
+    assert!(reports(&[&strip("pressure = 1e3")], "traction.0") && !reports(&[&lasting, "boundary.bottom=fixed"], ""));
+    assert!(reports(&[&shear, "boundary.left=absorbing", "boundary.right=absorbing"], "traction.0"));
     let (whole, half) = ("centre = [2, 2], radius = 0.5", "centre = [2, 3], radius = 0.5");
     let hole = "body.0.subtract=[{ circle = { centre = [2, 2], radius = 0.5 } }, { circle = { centre = [2, 3], radius = 0.5 } }]";
     let round = |circle: &str| format!("traction.0={{ circle = {{ {circle} }}, pressure = 1e3, ramp = 0.1 }}");
-    assert!(!told(&[hole, &round(whole), "body.0.box.upper=[4, 4]"], ""));
-    assert!(told(&[hole, &round(half), "grid.upper=[4, 3]"], "traction.0"));
+    assert!(!reports(&[hole, &round(whole), "body.0.box.upper=[4, 4]"], ""));
+    assert!(reports(&[hole, &round(half), "grid.upper=[4, 3]"], "traction.0"));
     let weight = ["gravity.acceleration=[0, -9.81]", "initial.gravity=\"elastic\""];
-    assert!(!told(&[&[&*lasting], &weight[..]].concat(), ""), "in the equilibrium of the start");
+    assert!(!reports(&[&[&*lasting], &weight[..]].concat(), ""), "in the equilibrium of the start");
     let grows = strip("stress = [0, -1e3], ramp = 0.1");
-    assert!(told(&[&[&*grows], &weight[..]].concat(), "traction.0"));
-    assert!(told(&["point_load.0={ at = [1, 3], force_path = [[0.1, 0, 5], [0.2, 0, 3]] }"], "point_load.0"));
+    assert!(reports(&[&[&*grows], &weight[..]].concat(), "traction.0"));
+    assert!(reports(&["point_load.0={ at = [1, 3], force_path = [[0.1, 0, 5], [0.2, 0, 3]] }"], "point_load.0"));
     let foot = |path: &str| format!("footing={{ from = [1, 3], to = [2, 3], path = {path} }}");
-    assert!(told(&[&foot("[[0.1, 0, -0.01]]")], "footing"));
-    assert!(!told(&[&foot("[[0.1, 0, -0.01], [0.2, 0, 0]]")], ""));
+    assert!(reports(&[&foot("[[0.1, 0, -0.01]]")], "footing"));
+    assert!(!reports(&[&foot("[[0.1, 0, -0.01], [0.2, 0, 0]]")], ""));
     let block = "name = \"block\", polygon = [[1, 3], [2, 3], [2, 4], [1, 4]]";
-    assert!(told(&[&format!("rigid.0={{ {block}, displacement = [0, -0.1] }}")], "rigid.0"));
-    assert!(told(&[&format!("rigid.0={{ {block}, mass = 10, free = [\"y\"], force = [0, -5] }}")], "rigid.0"));
+    assert!(reports(&[&format!("rigid.0={{ {block}, displacement = [0, -0.1] }}")], "rigid.0"));
+    assert!(reports(&[&format!("rigid.0={{ {block}, mass = 10, free = [\"y\"], force = [0, -5] }}")], "rigid.0"));
 }
 
-/// A footing without a name is `footing` to stages as to histories; a ramp of no force does nothing, and is told so.
+/// A footing without a name is `footing` to stages as to histories; a ramp of no force does nothing, and is reported.
 #[test]
 fn names_and_ramps_of_what_has_none() {
     let footing = "footing={ from = [0, 1], to = [2, 1], displacement = [0, -0.1] }";
@@ -387,8 +387,8 @@ fn rigid_bodies_stay_out_of_the_free_field_on_their_way() {
     "#;
     let refused = |more: &str| {
         let block = format!("rigid.0={{ name = \"block\", polygon = [[1, 3], [2, 3], [2, 4], [1, 4]], {more} }}");
-        let told = set(base, &[&block]).err().map(|errors| format!("{errors:?}")).unwrap_or_default();
-        let of = |side: &str| told.contains(&format!("boundary.{side}")) && told.contains("a rigid body acts");
+        let reported = set(base, &[&block]).err().map(|errors| format!("{errors:?}")).unwrap_or_default();
+        let of = |side: &str| reported.contains(&format!("boundary.{side}")) && reported.contains("a rigid body acts");
         ["left", "right"].map(of)
     };
     assert_eq!(refused("friction_coefficient = 0.1"), [false; 2]);
@@ -404,7 +404,7 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
         let strip = format!("prescribed.0={{name=\"wall\", {strip}, displacement=[0.01, 0]}}");
         let force = "history.0={quantity=\"reaction\", of=\"wall\", name=\"wall\"}";
         let warnings = valid(STATIC, &[&[strip.as_str(), force], more].concat()).warnings;
-        warnings.into_iter().filter(|told| told.contains("meets")).collect::<Vec<_>>()
+        warnings.into_iter().filter(|warning| warning.contains("meets")).collect::<Vec<_>>()
     };
     let wall = "from=[0, 0], to=[0, 1]";
     let fixed = warned(wall, &[]);
@@ -414,8 +414,8 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
         "boundary.left=roller",
         "body.0={material=\"soil\", polygon=[[0, 0], [2, 0], [2, 1], [0, 1.4]], points_per_cell=3}",
     ];
-    let askew = warned("from=[0, 1.4], to=[1, 1.2]", &cone);
-    assert!(askew.len() == 1 && askew[0].contains("meets left, which holds at the edge"), "{askew:?}");
+    let inclined = warned("from=[0, 1.4], to=[1, 1.2]", &cone);
+    assert!(inclined.len() == 1 && inclined[0].contains("meets left, which holds at the edge"), "{inclined:?}");
     assert!(warned("from=[0.5, 1.3], to=[1.5, 1.1]", &cone).is_empty());
 }
 
@@ -426,21 +426,25 @@ fn sections_beside_what_acts_are_warned_of() {
                  grid = { lower = [0, 0], upper = [8, 6], cell = 0.5, degree = 'quadratic' }\n\
                  material.soil = { model = 'elastic', young = 1e6, poisson = 0.3 }\nboundary = { bottom = 'fixed' }\n\
                  [[body]]\nmaterial = 'soil'\nbox = { lower = [0, 0], upper = [8, 4] }\npoints_per_cell = 2\n";
-    let told = |section: &str, acts: &str| {
+    let reports = |section: &str, acts: &str| {
         let case = format!("{block}[[history]]\nquantity = 'section-forces'\n{section}\n{acts}");
         let warnings = valid(&case, &[]).warnings;
-        warnings.iter().filter(|told| told.contains("of the section at the start")).count()
+        warnings.iter().filter(|warning| warning.contains("of the section at the start")).count()
     };
     let strip = "[[prescribed]]\nfrom = [2, 2]\nto = [6, 2]\ndisplacement = [0, -0.1]";
     let level = |y: f64| format!("from = [0, {y}]\nto = [8, {y}]");
     let upright = |x: f64| format!("from = [{x}, 0]\nto = [{x}, 4]");
-    assert_eq!([1.0, 1.25, 2.0, 2.75, 3.0].map(|y| told(&level(y), strip)), [0, 1, 1, 1, 0], "level, beside a strip");
-    assert_eq!([1.0, 2.5, 4.0, 5.5, 7.0].map(|x| told(&upright(x), strip)), [0, 1, 0, 1, 0], "upright, at its ends");
+    assert_eq!(
+        [1.0, 1.25, 2.0, 2.75, 3.0].map(|y| reports(&level(y), strip)),
+        [0, 1, 1, 1, 0],
+        "level, beside a strip"
+    );
+    assert_eq!([1.0, 2.5, 4.0, 5.5, 7.0].map(|x| reports(&upright(x), strip)), [0, 1, 0, 1, 0], "upright, at its ends");
     let footing = "[footing]\nfrom = [2, 4]\nto = [6, 4]\ndisplacement = [0, -0.1]";
-    assert_eq!([3.25, 3.75, 4.0].map(|y| told(&level(y), footing)), [0, 0, 0], "where the material ends");
-    assert_eq!([2.5, 4.0].map(|x| told(&upright(x), footing)), [1, 0], "upright");
-    assert_eq!(told("from = [2.5, 0]\nto = [2.5, 2]", footing), 0, "ends far below");
+    assert_eq!([3.25, 3.75, 4.0].map(|y| reports(&level(y), footing)), [0, 0, 0], "where the material ends");
+    assert_eq!([2.5, 4.0].map(|x| reports(&upright(x), footing)), [1, 0], "upright");
+    assert_eq!(reports("from = [2.5, 0]\nto = [2.5, 2]", footing), 0, "ends far below");
     let pipe = "[[rigid]]\nname = 'pipe'\ncircle = { centre = [4, 4.5], radius = 0.5 }\ndisplacement = [0, -0.1]";
-    assert_eq!([told(&upright(4.0), pipe), told(&upright(6.0), pipe)], [1, 0]);
-    assert_eq!(told(&level(2.5), "[[point_load]]\nat = [4, 2]\nforce = [0, -1]"), 1);
+    assert_eq!([reports(&upright(4.0), pipe), reports(&upright(6.0), pipe)], [1, 0]);
+    assert_eq!(reports(&level(2.5), "[[point_load]]\nat = [4, 2]\nforce = [0, -1]"), 1);
 }

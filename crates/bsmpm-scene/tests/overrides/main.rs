@@ -30,7 +30,7 @@ fn valid(text: &str, overrides: &[&str]) -> Case {
 /// What is warned of but for what the base itself is: rigid bodies of the full one are thinner than two of its cells.
 fn doubts(text: &str, overrides: &[&str]) -> Vec<String> {
     let base = valid(text, &[]).warnings;
-    valid(text, overrides).warnings.into_iter().filter(|told| !base.contains(told)).collect()
+    valid(text, overrides).warnings.into_iter().filter(|warning| !base.contains(warning)).collect()
 }
 
 #[test]
@@ -194,10 +194,11 @@ fn the_full_case_in_si() {
     let within = Some([[0.0, 0.0, 0.0], [2.0, 1.0, 0.0]]);
     assert_eq!(case.histories[4].quantity, Quantity::PressureNoise { of: Counted { made: Made::All, within } });
     assert_eq!((case.checks[0].at, case.checks[0].max, case.checks[1].at), (0.5, Some(4.0), 1.0));
-    let told =
-        |what: &str| case.warnings.iter().filter(|told| told.starts_with("rigid.") && told.contains(what)).count();
-    let (thin, placed) = (told("points on its two sides share nodes"), told("a stage places body.5 at it"));
-    let cut = case.warnings.iter().filter(|told| told.contains("of the section at the start")).count();
+    let reports = |what: &str| {
+        case.warnings.iter().filter(|warning| warning.starts_with("rigid.") && warning.contains(what)).count()
+    };
+    let (thin, placed) = (reports("points on its two sides share nodes"), reports("a stage places body.5 at it"));
+    let cut = case.warnings.iter().filter(|warning| warning.contains("of the section at the start")).count();
     let coarse = case.warnings.iter().filter(|warning| warning.contains("cells per wavelength")).count();
     let approach = case.warnings.iter().filter(|warning| warning.contains("approach each other")).count();
     let found = (case.warnings.len(), thin, placed, cut, coarse, approach);
@@ -220,7 +221,7 @@ fn the_background_is_a_ten_thousandth_at_rest_unless_the_case_wants_another() {
 #[test]
 fn words_of_retired_keys_that_change_nothing_are_read_with_a_warning() {
     let plain = valid(STATIC, &[]);
-    for (set, told) in [
+    for (set, reported) in [
         (
             "solver.background_kind=strain",
             "solver.background_kind: this key has no effect any more, as the background always resists strain. Delete it.",
@@ -237,7 +238,7 @@ fn words_of_retired_keys_that_change_nothing_are_read_with_a_warning() {
     ] {
         let case = valid(STATIC, &[set]);
         let further: Vec<_> = case.warnings.iter().filter(|warning| !plain.warnings.contains(warning)).collect();
-        assert_eq!(further, [told]);
+        assert_eq!(further, [reported]);
         assert_eq!((&case.solver, &case.notes), (&plain.solver, &plain.notes), "{set}");
         assert_eq!(differences(&case.text, &plain.text).unwrap(), [], "a run goes on with or without it");
     }
@@ -253,11 +254,11 @@ fn words_of_retired_keys_that_were_removed_are_refused_with_what_replaces_them()
         for text in [STATIC, FULL] {
             let errors = set(text, &[&format!("{key}={word}")]).unwrap_err();
             let [error] = &errors[..] else { panic!("{errors:?}") };
-            let told = format!(
+            let reported = format!(
                 "\"{word}\" was removed after bsmpm 0.1.0, commit c1b20825. Delete the key: solver.extension = \"linear\", \
                  the default in quasi-static analysis, replaces it."
             );
-            assert_eq!((error.key.as_str(), &error.message), (key, &told));
+            assert_eq!((error.key.as_str(), &error.message), (key, &reported));
             assert_eq!(error.removed.map(|removed| removed.word), Some(word));
         }
     }

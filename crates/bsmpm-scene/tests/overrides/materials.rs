@@ -23,7 +23,7 @@ fn cones_and_cylinders() {
         let [friction, dilation, cohesion] = clay.parameters()[..] else { panic!() };
         assert!(clay.fit() == fit && cohesion == 800.0 && dilation == 0.0);
         let weaker = if fit == Match::Inner { "99.0 %" } else { "96.1 %" };
-        assert!(case.warnings.iter().any(|told| told.contains(weaker)), "{:?}", case.warnings);
+        assert!(case.warnings.iter().any(|warning| warning.contains(weaker)), "{:?}", case.warnings);
         assert!((friction.tan() * 1.25 - f64::to_radians(30.0).tan()).abs() < 1e-14);
     }
     let case =
@@ -63,12 +63,12 @@ fn softening_strengths() {
     let parameters = clay.parameters();
     assert_eq!((parameters[2], parameters[5], parameters[6]), (800.0, 0.0, 0.2));
     assert!((parameters[3].tan() * 1.25 - f64::to_radians(25.0).tan()).abs() < 1e-14);
-    assert!(case.warnings.iter().any(|told| told.contains("results depend on the cells")), "{:?}", case.warnings);
+    assert!(case.warnings.iter().any(|warning| warning.contains("results depend on the cells")), "{:?}", case.warnings);
     let case = with("residual_cohesion = 0, softening_strain = 0.2, band_width = \"5 cm\"").expect("a valid case");
     let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else { panic!() };
     assert!((clay.parameters()[6] - 0.01).abs() < 1e-15, "{:?}", clay.parameters());
-    assert!(!case.warnings.iter().any(|told| told.contains("depend on the cells")));
-    for (text, told) in [
+    assert!(!case.warnings.iter().any(|warning| warning.contains("depend on the cells")));
+    for (text, reported) in [
         ("softening_strain = 0.2", "needs it"),
         ("residual_cohesion = 0, softening_strain = 0", "allowed: softening_strain > 0"),
         (
@@ -79,10 +79,10 @@ fn softening_strengths() {
         ("residual_cohesion = 0, softening_strain = 0.2, separation = \"gap\"", "has no meaning"),
     ] {
         let message = format!("{:?}", with(text).expect_err(text));
-        assert!(message.contains(told), "{message}");
+        assert!(message.contains(reported), "{message}");
     }
     let case = with("residual_cohesion = 0, softening_strain = 1e-5").expect("a valid case");
-    assert!(case.warnings.iter().any(|told| told.contains("drops at once")), "{:?}", case.warnings);
+    assert!(case.warnings.iter().any(|warning| warning.contains("drops at once")), "{:?}", case.warnings);
 }
 
 /// The width of a band was measured in plane strain, with some methods and splines, and not under what pushes.
@@ -90,14 +90,15 @@ fn softening_strengths() {
 fn band_widths_are_warned_of_where_they_were_not_measured() {
     let clay = "material.soil={ model = \"sensitive-clay\", young = 1e7, poisson = 0.3, cohesion = 1e4, density = 2e3, \
                 sensitivity = 3, softening_strain = 2, band_width = 0.1 }";
-    let told = |base: &str, set: &[&str]| {
+    let reports = |base: &str, set: &[&str]| {
         let warnings = valid(base, &[&[clay], set].concat()).warnings;
-        let found: Vec<_> = warnings.into_iter().filter(|told| told.contains("do the work of 2 of them")).collect();
+        let found: Vec<_> =
+            warnings.into_iter().filter(|warning| warning.contains("do the work of 2 of them")).collect();
         assert!(found.len() <= 1, "{found:?}");
         found.concat()
     };
     let with = |method: &str, more: &[&str]| {
-        told(STATIC, &[&[&*format!("stabilisation.method={method}")], &["grid.cell=0.5"], more].concat())
+        reports(STATIC, &[&[&*format!("stabilisation.method={method}")], &["grid.cell=0.5"], more].concat())
     };
     assert!(["consistent-f-bar", "f-bar", "subgrid-f-bar"].iter().all(|method| with(method, &[]).is_empty()));
     for (found, expected) in [
@@ -106,7 +107,7 @@ fn band_widths_are_warned_of_where_they_were_not_measured() {
         (with("f-bar-zhao", &[]), "it never was"),
         (with("f-bar", &["grid.degree=linear"]), "that of 2.25, +12 %"),
         (with("f-bar", &["footing={ from = [0.5, 1], to = [1, 1], displacement = [0, -0.1] }"]), "under a strip"),
-        (told(ROUND, &["grid.cell=0.25", "stabilisation.method=f-bar"]), "in \"axisymmetric\" it never was"),
+        (reports(ROUND, &["grid.cell=0.25", "stabilisation.method=f-bar"]), "in \"axisymmetric\" it never was"),
     ] {
         assert!(found.contains(expected), "{expected}: {found}");
     }
@@ -154,10 +155,10 @@ fn layers_by_height_and_reduced_strength() {
 fn strength_that_falls_in_a_stage_takes_the_friction_of_rigid_bodies_and_strips_with_it() {
     let base = "footing.interface={ friction_coefficient = 0.5 }";
     let case = valid(FULL, &[base, "stage.0.strength_reduction=2.5"]);
-    // Of the start, and from .25 s on.
+    // Of the start, and from 0.25 s on.
     let friction = |t: f64| {
         let boundary = bsmpm_scene::model::model_at::<PlaneStrain, 2>(&case, t).unwrap().boundary;
-        [boundary.rigid[0].friction, boundary.strips[0].contact.expect("it rubs").law.friction]
+        [boundary.rigid[0].friction, boundary.strips[0].contact.expect("it has friction").law.friction]
     };
     let (start, later) = (friction(0.0), friction(0.3));
     assert!((start[0] - 0.4 / 1.25).abs() < 1e-15 && (start[1] - 0.5 / 1.25).abs() < 1e-15, "{start:?}");
@@ -229,7 +230,7 @@ fn cam_clay_and_its_start() {
     let grows = "preconsolidation = { value = \"50 kPa\", at_y = 2.0, per_metre = 5e3 }";
     let graded = &with(grows).expect("a valid case").materials[1].material;
     assert_eq!((graded.at(1.0).parameters()[3], graded.is_linear(), graded.softens()), (55e3, false, true));
-    for (text, told) in [
+    for (text, reported) in [
         ("poisson = 0.3", "duplicate key"),
         ("k0 = 0.5", "missing; model \\\"modified-cam-clay\\\" needs it, or ocr"),
         ("ocr = 0.9", "allowed: ocr >= 1"),
@@ -237,13 +238,13 @@ fn cam_clay_and_its_start() {
         ("ocr = 2, cohesion = 1e3", "has no meaning"),
     ] {
         let message = format!("{:?}", with(text).expect_err("refused"));
-        assert!(message.contains(told), "{text}: {message}");
+        assert!(message.contains(reported), "{text}: {message}");
     }
     let clay = format!("material.clay={{ {keys}, ocr = 2 }}");
     let text = FULL.replace("k0          = 0.6\n", "").replace("factor = 1.25", "factor = 1.0");
-    let refused = |sets: &[&str], told: &str| {
+    let refused = |sets: &[&str], reported: &str| {
         let message = format!("{:?}", set(&text, &[&[clay.as_str()], sets].concat()).expect_err("refused"));
-        assert!(message.contains(told), "{sets:?}: {message}");
+        assert!(message.contains(reported), "{sets:?}: {message}");
     };
     refused(&["material.clay.lambda_star=0.02"], "lambda_star > kappa_star = 0.02");
     refused(&["initial.gravity=elastic"], "no state without stress: give [initial] k0");
@@ -272,13 +273,13 @@ fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate() {
     assert_eq!((numbers[0], numbers[2], numbers[5]), (0.0, 2.2e4, 5.5e3));
     assert!((numbers[6] - 20.0 / 3.0_f64.sqrt()).abs() < 1e-14);
     assert!(clay.over(0.1).is_some() && with("k0 = 0.5").expect("no rate").materials[1].material.over(0.1).is_none());
-    for (text, told) in [
+    for (text, reported) in [
         ("rate_parameter = 0.1", "missing; a rate needs both"),
         ("sensitivity = 0.5", "duplicate key"),
         ("friction_angle = 10", "has no meaning"),
     ] {
         let message = format!("{:?}", with(text).expect_err("refused"));
-        assert!(message.contains(told), "{text}: {message}");
+        assert!(message.contains(reported), "{text}: {message}");
     }
     let (clay, time) = (format!("material.soil={{ {keys}, {rate} }}"), "analysis.type=quasi-static-rate");
     let case = set(STATIC, &[&clay, time]).expect("in real time");

@@ -7,7 +7,7 @@ use bsmpm_scene::{Case, GridAxis};
 
 use super::PoolLoad;
 
-/// Characters of the settings in the name of a directory; what is longer is told apart by the hash.
+/// Characters of the settings in the name of a directory; what is longer is distinguished by the hash.
 const LONGEST: usize = 80;
 /// Digits of the hash there.
 const DIGITS: usize = 8;

@@ -22,13 +22,13 @@ pub(crate) struct Limits {
     pub memory: u64,
 }
 
-/// The results of `work` for every load, in their order; `told` gets each as soon as it is there. A load beyond the
+/// The results of `work` for every load, in their order; `report` gets each as soon as it is there. A load beyond the
 /// memory of all runs alone: whether it is begun at all is the caller's choice.
 pub(crate) fn all<T: Send>(
     loads: &[PoolLoad],
     limits: Limits,
     work: impl Fn(usize) -> T + Sync,
-    mut told: impl FnMut(usize, &T),
+    mut report: impl FnMut(usize, &T),
 ) -> Vec<T> {
     let mut waiting: Vec<usize> = (0..loads.len()).collect();
     waiting.sort_by(|&a, &b| loads[b].work.total_cmp(&loads[a].work));
@@ -52,7 +52,7 @@ pub(crate) fn all<T: Send>(
             running.retain(|&other| other != index);
             // A fault of the program ends all of it, once the runs under way have ended.
             let result = result.unwrap_or_else(|fault| resume_unwind(fault));
-            told(index, &result);
+            report(index, &result);
             made[index] = Some(result);
         }
     });

@@ -24,7 +24,7 @@ const TOLERANCE: &str = "tolerance";
 /// How far the axes go beyond the first and last iteration, as a share of their number: a disc's radius and a little
 /// more.
 const BESIDE: f64 = 0.02;
-/// What is left of a force of which an order is told.
+/// What is left of a force of which an order is reported.
 const LEAST: f64 = 0.9;
 /// The fewest iterations that are shown.
 const FEWEST: f64 = 3.0;
@@ -44,7 +44,7 @@ const MEASURES: [Measure; 2] = [
 struct ResidualCourse {
     label: String,
     iterates: Vec<Iterate>,
-    /// Of both measures, if the case tells them.
+    /// Of both measures, if the case reports them.
     tolerances: Option<[f64; 2]>,
 }
 

@@ -137,8 +137,8 @@ fn axis(
     Ok((label, unit.to_owned()))
 }
 
-/// The names of the runs: as given; else their stabilisation if it tells them apart, or with `--last` groups them; else
-/// their directories.
+/// The names of the runs: as given; else their stabilisation if it distinguishes them, or with `--last` groups them;
+/// else their directories.
 pub(super) fn labels(arguments: &CompareArguments, records: &[RunRecord]) -> Vec<String> {
     if !arguments.labels.is_empty() {
         return arguments.labels.clone();

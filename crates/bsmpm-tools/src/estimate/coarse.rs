@@ -5,7 +5,7 @@ use toml::{Table, Value};
 
 /// Points along each axis of a cell: more make a step dearer, and hardly change how many iterations it takes.
 const POINTS: i64 = 3;
-/// Cells across the thinnest body below which a form tells nothing.
+/// Cells across the thinnest body below which a form says nothing.
 const FEWEST: f64 = 2.0;
 /// Cells of coarse forms over the case's own, the coarsest first.
 pub(super) const FACTORS: [usize; 4] = [16, 8, 4, 2];

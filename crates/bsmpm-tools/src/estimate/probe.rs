@@ -99,7 +99,7 @@ pub(super) fn estimate(
     plan: &ProbePlan,
     guess: &StoredEstimate,
     deadline: Instant,
-    told: &mut dyn FnMut(&str),
+    report: &mut dyn FnMut(&str),
 ) -> Result<StoredEstimate, Error> {
     let folder = tempfile::Builder::new().prefix("bsmpm-estimate-").tempdir();
     let folder = folder.map_err(bsmpm_io::Error::file("make", &std::env::temp_dir()))?;
@@ -110,7 +110,7 @@ pub(super) fn estimate(
     let first = probes.of_case("first", wanted.min(most).max(1.0).floor())?;
     let measured = measured(guess, (&start, &first));
     let made = first.work();
-    told(&format!(
+    report(&format!(
         "first steps: {} with {} evaluations on {} rank(s), {:.2} CPU s besides {:.2} of the start",
         made.steps,
         made.evaluations,
@@ -119,7 +119,7 @@ pub(super) fn estimate(
         start.cpu()
     ));
     let until = first.rows.last().map_or(0.0, |row| row.time);
-    let levels = probes.levels(guess, until, told)?;
+    let levels = probes.levels(guess, until, report)?;
     let (work, basis) = match growth::extrapolate(&levels, plan.case.analysis.regime, made.iterations()) {
         Some(work) => (work, format!("first steps of the case, and {} coarse form(s) over all its time", levels.len())),
         None if made.steps > 0.0 => (
@@ -134,7 +134,7 @@ pub(super) fn estimate(
     let newton = levels.iter().map(|level| level.work.newton_part()).fold(made.newton_part(), f64::max);
     let band = if newton > NEWTON[0] { NEWTON[1] } else { BANDS[levels.len().min(BANDS.len() - 1)] };
     let found = StoredEstimate { work, unit, basis, band, ..measured };
-    let whole = probes.whole(&found, told)?;
+    let whole = probes.whole(&found, report)?;
     Ok(whole.unwrap_or(found))
 }
 
@@ -185,7 +185,7 @@ impl Probes<'_> {
         &self,
         guess: &StoredEstimate,
         until: f64,
-        told: &mut dyn FnMut(&str),
+        report: &mut dyn FnMut(&str),
     ) -> Result<Vec<GrowthLevel>, Error> {
         let mut levels = Vec::new();
         let mut taken = None;
@@ -199,7 +199,7 @@ impl Probes<'_> {
             let run = self.run(&format!("cells{factor}"), &text, &[], 1)?;
             taken = Some(begin.elapsed().as_secs_f64());
             let level = level(factor, &run, (until, self.plan.case.analysis.end));
-            told(&match &level {
+            report(&match &level {
                 Some(level) => format!(
                     "cells {factor} times as large: {:.0} evaluations in {:.0} steps, {:.2} CPU s",
                     level.work.evaluations,
@@ -214,7 +214,7 @@ impl Probes<'_> {
     }
 
     /// What the whole case takes, if that is expected to be little.
-    fn whole(&self, expected: &StoredEstimate, told: &mut dyn FnMut(&str)) -> Result<Option<StoredEstimate>, Error> {
+    fn whole(&self, expected: &StoredEstimate, report: &mut dyn FnMut(&str)) -> Result<Option<StoredEstimate>, Error> {
         let case = self.plan.case;
         let frames = sizes::frames(case, expected.work.steps);
         let (part, bytes) = WHOLE;
@@ -227,10 +227,10 @@ impl Probes<'_> {
         let run = self.run("whole", &case.text, &[], self.plan.ranks)?;
         let (work, taken) = (run.work(), run.cpu() - expected.start - expected.frame * frames.saturating_sub(1) as f64);
         if run.outcome.state != RunState::Done || work.units() <= 0.0 {
-            told(&format!("the whole case: ended early ({}), of no use", run.outcome.reason));
+            report(&format!("the whole case: ended early ({}), of no use", run.outcome.reason));
             return Ok(None);
         }
-        told(&format!(
+        report(&format!(
             "the whole case: {} evaluations in {} steps, {:.2} CPU s",
             work.evaluations,
             work.steps,
@@ -287,7 +287,7 @@ fn rows(directory: &Path) -> Vec<ProbeRow> {
     (0..length).map(row).collect()
 }
 
-/// What a coarse form tells, if it came far enough; the work of what it did not reach is taken as even.
+/// What a coarse form reports, if it came far enough; the work of what it did not reach is taken as even.
 fn level(factor: usize, run: &ProbeRun, (until, end): (f64, f64)) -> Option<GrowthLevel> {
     let reached = run.rows.last()?.time / end;
     let first = run.rows.partition_point(|row| row.time <= until * (1.0 + 1e-9));

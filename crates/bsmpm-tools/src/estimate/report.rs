@@ -1,4 +1,4 @@
-//! What is told of an estimate: a table for people, JSON for programs.
+//! What is reported of an estimate: a table for people, JSON for programs.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -145,10 +145,10 @@ impl EstimateReport {
                 &format!("{:.0}", self.work.evaluations),
                 beside(|actual| actual.evaluations.to_string()),
             ),
-            row("processor time", &told(self.cpu_seconds), beside(|actual| seconds(actual.cpu_seconds))),
+            row("processor time", &reports(self.cpu_seconds), beside(|actual| seconds(actual.cpu_seconds))),
             row(
                 &format!("time on {} rank(s)", self.ranks),
-                &told(self.seconds),
+                &reports(self.seconds),
                 beside(|actual| seconds(actual.seconds)),
             ),
             row("ranks of use", &format!("up to {}", self.useful_ranks), String::new()),
@@ -180,7 +180,7 @@ fn row(what: &str, estimate: &str, actual: String) -> [String; 3] {
     [what.to_owned(), estimate.to_owned(), actual]
 }
 
-fn told(band: EstimateBand) -> String {
+fn reports(band: EstimateBand) -> String {
     format!("{} ({} to {})", seconds(band.value), seconds(band.low), seconds(band.high))
 }
 
@@ -245,8 +245,8 @@ mod tests {
     }
 
     #[test]
-    fn times_are_told_as_people_say_them() {
-        let told = [0.051, 9.99, 12.3, 700.0, 40_000.0].map(seconds);
-        assert_eq!(told, ["0.05 s", "9.99 s", "12 s", "12 min", "11.1 h"]);
+    fn times_are_reported_as_people_say_them() {
+        let reported = [0.051, 9.99, 12.3, 700.0, 40_000.0].map(seconds);
+        assert_eq!(reported, ["0.05 s", "9.99 s", "12 s", "12 min", "11.1 h"]);
     }
 }

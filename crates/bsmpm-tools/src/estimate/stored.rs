@@ -115,9 +115,9 @@ pub(super) fn spread(case: &Case, ranks: usize, unknowns: Option<u64>, nodes: f6
 mod tests {
     use super::*;
 
-    /// The CPU seconds of `cases/results/solid.md` lie in the band that is told.
+    /// The CPU seconds of `cases/results/solid.md` lie in the band that is reported.
     #[test]
-    fn solids_took_what_is_told_of_them() {
+    fn solids_took_what_is_reported_of_them() {
         let column = include_str!("../../../../cases/round_column.toml");
         let footing = include_str!("../../../../cases/square_footing.toml");
         let short = "analysis.end=0.05";
@@ -131,9 +131,9 @@ mod tests {
         for (text, set, took) in runs {
             let set: Vec<String> = set.iter().map(ToString::to_string).collect();
             let case = Case::from_text("solid", text, &set).unwrap();
-            let told = guess(&case, 1, 1.0).seconds(sizes::frames(&case, sizes::steps(&case)));
-            println!("{set:?}: {told:.1} s for {took}");
-            assert!((1.0 / BAND..BAND).contains(&(told / took)), "{set:?}: {told} s for {took}");
+            let reported = guess(&case, 1, 1.0).seconds(sizes::frames(&case, sizes::steps(&case)));
+            println!("{set:?}: {reported:.1} s for {took}");
+            assert!((1.0 / BAND..BAND).contains(&(reported / took)), "{set:?}: {reported} s for {took}");
         }
     }
 }

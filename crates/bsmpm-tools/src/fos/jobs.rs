@@ -56,7 +56,7 @@ struct Jobs<'a, S: JobSource> {
 }
 
 /// The curve of a search, with up to `most` trials at the same time, and the trials for which it has asked, in that
-/// order; `told` gets each as soon as it counts.
+/// order; `report` gets each as soon as it counts.
 ///
 /// # Errors
 /// Those of the search, and of trials for which it has asked. No trial is left running.
@@ -64,13 +64,13 @@ pub(super) fn find<S: JobSource>(
     plan: SearchPlan,
     most: usize,
     source: &S,
-    mut told: impl FnMut(&S::Trial),
+    mut report: impl FnMut(&S::Trial),
 ) -> Result<(FactorCurve, Vec<S::Trial>), Error> {
     let (sender, receiver) = mpsc::channel();
     let (running, made, asked) = (Vec::new(), Vec::new(), Vec::new());
     let mut jobs = Jobs { plan, most, source, running, made, asked, sender, receiver };
     let curve = thread::scope(|scope| {
-        let curve = jobs.curve(scope, &mut told);
+        let curve = jobs.curve(scope, &mut report);
         jobs.running.iter().for_each(|running| running.stop.ask());
         curve
     })?;
@@ -81,10 +81,10 @@ impl<'a, S: JobSource> Jobs<'a, S> {
     fn curve<'scope>(
         &mut self,
         scope: &'scope Scope<'scope, 'a>,
-        told: &mut dyn FnMut(&S::Trial),
+        report: &mut dyn FnMut(&S::Trial),
     ) -> Result<FactorCurve, Error> {
         loop {
-            match search(self.plan, &mut |factor| self.ask(factor, told)) {
+            match search(self.plan, &mut |factor| self.ask(factor, report)) {
                 Ok(curve) => return Ok(curve),
                 Err(Halt::Over(error)) => return Err(error),
                 Err(Halt::Needs(factor)) => self.bring(factor, scope)?,
@@ -93,10 +93,10 @@ impl<'a, S: JobSource> Jobs<'a, S> {
     }
 
     /// The answer to the search.
-    fn ask(&mut self, factor: f64, told: &mut dyn FnMut(&S::Trial)) -> Option<CurveState> {
+    fn ask(&mut self, factor: f64, report: &mut dyn FnMut(&S::Trial)) -> Option<CurveState> {
         if let Some(index) = self.made.iter().position(|made| made.0 == factor && made.1.is_ok()) {
             let trial = self.made.swap_remove(index).1.ok()?;
-            told(&trial);
+            report(&trial);
             self.asked.push(trial);
         }
         self.asked.iter().map(S::state).find(|state| state.factor == factor)
@@ -261,9 +261,9 @@ mod tests {
             let curve = curve.map_err(|error| error.to_string());
             for (most, seed) in (1..=4).flat_map(|most| (0..4).map(move |seed| (most, seed))) {
                 let source = Body::new(body, seed);
-                let mut told = Vec::new();
-                let found = find(PLAN, most, &source, |trial| told.push(trial.factor));
-                assert_eq!(told, asked, "{most} jobs");
+                let mut report = Vec::new();
+                let found = find(PLAN, most, &source, |trial| report.push(trial.factor));
+                assert_eq!(report, asked, "{most} jobs");
                 let found = found.map_err(|error| error.to_string()).map(|found| found.0);
                 assert_eq!(found, curve, "{most} jobs");
                 let (left, together, made) = source.count.into_inner().unwrap();
@@ -295,10 +295,10 @@ mod tests {
             for from in [asked[0], asked[4], asked[9]] {
                 let source = Body { breaks: &|factor| factor >= from, ..Body::new(&body, seed) };
                 let first = asked.iter().position(|&factor| factor >= from).unwrap();
-                let mut told = Vec::new();
-                let error = find(PLAN, most, &source, |trial| told.push(trial.factor)).unwrap_err();
+                let mut report = Vec::new();
+                let error = find(PLAN, most, &source, |trial| report.push(trial.factor)).unwrap_err();
                 assert_eq!(error.to_string(), broken(asked[first]).to_string());
-                assert_eq!(told, asked[..first]);
+                assert_eq!(report, asked[..first]);
             }
         }
     }

@@ -12,7 +12,7 @@ const LOOSEST: f64 = 1e-3;
 pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
     let materials = followed(case, until);
     let any = |holds: fn(&Material) -> bool| materials.iter().any(|named| holds(&named.material));
-    let has_strength = any(Material::yields) || case.rubs_at(acting(case, until));
+    let has_strength = any(Material::yields) || case.has_friction_at(acting(case, until));
     let has_amplitude = until.is_none() && amplitudes(case).any(|rows| !rows.is_empty());
     let never_full = until.is_none() && ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
@@ -44,7 +44,7 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
             case.stages.iter().any(|stage| stage.strength_reduction.is_some()),
             "the case divides the strength itself, at the end of a stage or in one: leave that out, as the search does so",
         ),
-        (!has_strength, "no material is plastic and nothing rubs: there is no strength to be reduced"),
+        (!has_strength, "no material is plastic and no contact has friction: there is no strength to be reduced"),
         (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),
         (
             has_amplitude,
@@ -64,7 +64,7 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (
             until.is_none() && is_moved(case),
-            "the case prescribes a motion: what moves as told shows no failure, however little strength is left; give the \
+            "the case prescribes a motion: what moves as prescribed shows no failure, however little strength is left; give the \
              load instead of the motion, or run the case itself and read its force against the motion, or give --stage NAME, \
              at whose end what has moved is held where it is, as a wall is",
         ),

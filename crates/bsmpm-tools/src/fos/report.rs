@@ -207,7 +207,7 @@ impl FosReport {
                 "use the first; the other is too low where soil yields long before the body fails\n"
             }
             (None, _) => {
-                "there is no kink: use the first, told by what the note says; the other is too low where soil yields long \
+                "there is no kink: use the first, reported by what the note says; the other is too low where soil yields long \
                  before the body fails\n"
             }
         }

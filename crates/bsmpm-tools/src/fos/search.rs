@@ -155,7 +155,7 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// A trial that found no equilibrium before it moved much may be the solver's failure: the next factor tells,
+    /// A trial that found no equilibrium before it moved much may be the solver's failure: the next factor decides,
     /// unless it is known to fail as well.
     fn doubted(&self, factor: f64) -> Option<f64> {
         let state = self.curve.at(factor).filter(|state| !state.whole && self.curve.growth(state) <= DOUBLED)?;

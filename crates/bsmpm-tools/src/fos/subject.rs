@@ -67,7 +67,7 @@ pub(super) struct Subject {
     /// whether the case begins with a stress, which trials do not
     is_stressed: bool,
     /// whether any interface has friction
-    rubs: bool,
+    has_friction: bool,
     /// rigid bodies that are there; these or strips that are moved
     has_rigid: [bool; 2],
     /// water flows until then; in the trials it rests, and has the pressures of that time
@@ -131,7 +131,7 @@ impl Subject {
         }
         let bytes = case::load(path)?;
         let mut set = set.to_vec();
-        // As it is, which tells what the trials set; then with the strength that the search begins with.
+        // As it is, which says what the trials set; then with the strength that the search begins with.
         let as_it_is = parsed(path, &bytes, &set)?;
         let from_the_start = if stage.is_none() { sought.overrides(&as_it_is, from, 1.0) } else { Vec::new() };
         let refused = sought.refusal(&as_it_is).map(|reason| vec![reason]);
@@ -177,7 +177,7 @@ impl Subject {
             conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
         }
         let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
-        let rubs = case.has_interface_friction();
+        let has_friction = case.has_interface_friction();
         let has_rigid = [!case.rigid.is_empty(), case.rigid.iter().any(Rigid::is_moved) || is_moved(&case)];
         let softens = followed(&case, until).iter().any(|named| named.material.softens());
         let holds_water = first.flow.is_some_and(|flow| flow.at_rest == Motion::Held);
@@ -199,7 +199,7 @@ impl Subject {
             case: as_it_is,
             is_grown,
             is_stressed,
-            rubs,
+            has_friction,
             has_rigid,
             holds_water,
             softens,
@@ -251,7 +251,7 @@ impl Subject {
         let stiffened = (stiffness != 1.0).then(|| {
             format!(
                 "the trials have {stiffness} times the case's stiffness, so that the geometry stays as drawn; displacements \
-                 are told as of its own"
+                 are reported as of its own"
             )
         });
         let grown = self.is_grown.then(|| {
@@ -268,14 +268,14 @@ impl Subject {
                  displacements are those since, added to the elastic one"
             )
         });
-        let rubs = self.rubs.then(|| {
+        let has_friction = self.has_friction.then(|| {
             "the friction of interfaces (boundary faces, footings, prescribed segments, rigid bodies and terrain) is divided by \
              the factor as tan(phi) is"
                 .to_owned()
         });
         let rigid = self.has_rigid[0].then(|| "rigid bodies do not fail themselves".to_owned());
         let stopped = self.has_rigid[1].then(|| {
-            "rigid bodies and strips that move as told are held where they are then: what they press with falls as the soil \
+            "rigid bodies and strips that move as prescribed are held where they are then: what they press with falls as the soil \
              does, and is no load"
                 .to_owned()
         });
@@ -283,7 +283,7 @@ impl Subject {
         let held = self.holds_water.then(|| bsmpm_scene::HELD_WATER.to_owned());
         staged
             .into_iter()
-            .chain(rubs)
+            .chain(has_friction)
             .chain(rigid)
             .chain(stopped)
             .chain(held)

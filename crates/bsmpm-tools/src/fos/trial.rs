@@ -145,7 +145,7 @@ impl Trials<'_> {
     ///
     /// # Errors
     /// [`Error::NoStableState`] if the case does not stand until then.
-    pub fn stage(&self, told: &mut dyn FnMut(&str)) -> Result<Option<StageState>, Error> {
+    pub fn stage(&self, report: &mut dyn FnMut(&str)) -> Result<Option<StageState>, Error> {
         let Some((name, until)) = self.subject.stage() else { return Ok(None) };
         let (set, text) = self.subject.until_the_stage()?;
         let origin = self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}"));
@@ -169,7 +169,7 @@ impl Trials<'_> {
         let from = outcome.manifest.as_ref().and_then(checkpoint).filter(|_| outcome.state == RunState::Done);
         let Some(checkpoint) = from else { return Err(outcome.error(what)) };
         let kept = if outcome.kept { ", kept" } else { "" };
-        told(&format!("{what}: {} iterations, {:.1} s{kept}", outcome.cost.iterations, outcome.cost.wall_seconds));
+        report(&format!("{what}: {} iterations, {:.1} s{kept}", outcome.cost.iterations, outcome.cost.wall_seconds));
         let elastic = self.elastic_trial()?;
         Ok(Some(StageState { checkpoint, cost: outcome.cost, elastic: elastic.displacement }))
     }

@@ -79,14 +79,14 @@ impl UnderWay {
 
     /// From now on a first TERM stops the processes and ends this program behind them; a second one ends it at once.
     fn watch(&'static self) -> io::Result<()> {
-        let (mut told, tells) = UnixStream::pair()?;
+        let (mut asked, asks) = UnixStream::pair()?;
         let again = Arc::new(AtomicBool::new(false));
         // In this order: the first signal finds `again` unset.
         flag::register_conditional_default(SIGTERM, Arc::clone(&again))?;
         flag::register(SIGTERM, again)?;
-        low_level::pipe::register(SIGTERM, tells)?;
+        low_level::pipe::register(SIGTERM, asks)?;
         thread::Builder::new().spawn(move || {
-            if told.read_exact(&mut [0]).is_ok() {
+            if asked.read_exact(&mut [0]).is_ok() {
                 self.stop();
             }
         })?;

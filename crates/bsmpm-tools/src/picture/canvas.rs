@@ -18,7 +18,7 @@ use crate::Error;
 /// How many times finer than the saved picture the drawing is.
 pub(crate) const FINE: usize = 3;
 const FONT: &str = "DejaVu Sans";
-/// Plotters puts the top of a text half a size above the foot of its letters; a capital is .626 sizes high.
+/// Plotters puts the top of a text half a size above the foot of its letters; a capital is 0.626 sizes high.
 const CAPITAL_CENTRE: f64 = 0.5 - 0.626 / 2.0;
 
 /// Where a text stands about its place; upright it is always centred on it.
@@ -157,7 +157,7 @@ impl Canvas {
     }
 }
 
-/// The width of a text in pixels; 0 for one that cannot be drawn, which its drawing tells.
+/// The width of a text in pixels; 0 for one that cannot be drawn, which its drawing reports.
 pub(crate) fn width(text: &str, size: f64) -> f64 {
     font(size).box_size(text).map_or(0.0, |(width, _)| f64::from(width) / FINE as f64)
 }

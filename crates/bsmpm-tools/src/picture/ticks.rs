@@ -128,7 +128,7 @@ fn power_of(largest: f64) -> i32 {
         return 0;
     }
     let last = POWERS[POWERS.len() - 1].0;
-    // Small numbers read better as .25 thousandths than as 250 millionths.
+    // Small numbers read better as 0.25 thousandths than as 250 millionths.
     let lift = if largest < 1.0 { 1.0 } else { 0.0 };
     (((largest.log10() + lift) / 3.0).floor() as i32 * 3).clamp(-last, last)
 }

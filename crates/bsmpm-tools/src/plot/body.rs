@@ -119,7 +119,7 @@ fn around([x, y]: [(f64, f64); 2]) -> [(f64, f64); 2] {
     [(x.0 - room, x.1 + room), (y.0 - room, y.1 + room)]
 }
 
-/// The box of the grid, if the manifest tells it.
+/// The box of the grid, if the manifest reports it.
 pub(super) fn outline(canvas: &mut Canvas, axes: &ChartAxes, record: &RunRecord) {
     let Some(grid) = &record.manifest.grid else { return };
     let corner = |of: &[f64]| {

@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cheapest_good_run_is_told_with_its_cost() {
+    fn the_cheapest_good_run_is_reported_with_its_cost() {
         let report = report(0.05);
         assert!(report.runs[3].is_reference && report.runs[0].is_baseline);
         let on_front: Vec<bool> = report.runs.iter().map(|row| row.on_front[0]).collect();

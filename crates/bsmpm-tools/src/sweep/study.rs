@@ -134,7 +134,7 @@ fn key(set: &str) -> &str {
     set.split_once('=').map_or(set, |(key, _)| key).trim()
 }
 
-/// The last part of a key that tells it from the others.
+/// The last part of a key that distinguishes it from the others.
 pub(super) fn short<'a>(key: &'a str, keys: &[String]) -> &'a str {
     let last = key.rsplit('.').next().unwrap_or(key);
     let others = keys.iter().filter(|other| *other != key && other.rsplit('.').next() == Some(last));
@@ -189,7 +189,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn the_case_s_own_values_are_told_and_are_one_run() {
+    fn the_case_s_own_values_are_reported_and_are_one_run() {
         let points = points(&["grid.cell=10 mm,5 mm", "solver.tolerance=1e-8,1e-6"], true, &[]).unwrap();
         let names: Vec<String> = points.iter().map(Point::name).collect();
         assert_eq!(

@@ -77,10 +77,10 @@ mod tests {
         assert_eq!(study["title"].as_str(), Some("{method}"), "only entries are filled");
         let rows = study["row"].as_array().unwrap();
         assert_eq!(rows.len(), 5);
-        let told: Vec<_> =
+        let known: Vec<_> =
             rows[..4].iter().map(|row| (row["quantity"].as_str().unwrap(), row["at"].as_float().unwrap())).collect();
         assert_eq!(
-            told,
+            known,
             [("z 0.1, none", 0.1), ("z 0.1, f-bar", 0.1), ("z 0.25, none", 0.25), ("z 0.25, f-bar", 0.25)]
         );
         assert!(rows[0].get("each").is_none() && rows[4]["max"].as_float() == Some(2.0));

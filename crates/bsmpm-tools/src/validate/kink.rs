@@ -38,7 +38,7 @@ mod tests {
 
     const KINK: MatrixKink = MatrixKink { x: String::new(), y: String::new(), elastic: 0.2, scale: 2.0 };
 
-    /// Straight, and a hundred times as soft from .7 on.
+    /// Straight, and a hundred times as soft from 0.7 on.
     fn bent(loads: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
         loads.map(|x| (x, x + 100.0 * (x - 0.7).max(0.0))).collect()
     }

@@ -79,7 +79,7 @@ pub(super) struct MatrixRow {
     pub tolerance: Option<f64>,
     pub min: Option<f64>,
     pub max: Option<f64>,
-    /// a failure that is told, and is none of the validation's
+    /// a failure that is reported, and is none of the validation's
     pub known: Option<KnownFailure>,
     pub run: Option<String>,
     pub column: Option<String>,

@@ -47,7 +47,7 @@ impl Launcher<'_> {
     }
 
     /// Everything that a run is made from, as it stands now: the solver, its arguments, the text of the case. None
-    /// where a part cannot be told.
+    /// where a part cannot be determined.
     fn origin(&self, case: &Path, arguments: &[String]) -> Option<String> {
         let text = fs::read_to_string(case).ok()?;
         let command = [self.solver.command, arguments].concat().join(" ");

@@ -15,7 +15,7 @@ pub(super) enum RowVerdict {
     /// passed, though the matrix says that it fails
     Mended,
     /// not judged
-    Told,
+    Warned,
     /// not judged, and without a number because a run did not come so far
     NotReached,
 }
@@ -49,7 +49,7 @@ impl RowVerdict {
             Self::Missed => "FAIL, not reached",
             Self::Known => "FAIL, known",
             Self::Mended => "FAIL, holds now",
-            Self::Told => "-",
+            Self::Warned => "-",
             Self::NotReached => "not reached",
         }
     }

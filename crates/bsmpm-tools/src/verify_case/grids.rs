@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn grids_that_the_case_cannot_have_are_told() {
+    fn grids_that_the_case_cannot_have_are_reported() {
         // 0.55 m is no whole number of cells of 20 mm.
         let error = grids(&[]).err().unwrap().to_string();
         assert!(error.contains("--refine-only"), "{error}");

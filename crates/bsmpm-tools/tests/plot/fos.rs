@@ -79,8 +79,8 @@ fn write_run(
     code: u8,
     loose: Option<String>,
 ) {
-    let told = ManifestCase::new("slope.toml", &case.title, "plane-strain", case.text.clone());
-    let mut manifest = Manifest::begin("0.1.0", argv, told);
+    let reported = ManifestCase::new("slope.toml", &case.title, "plane-strain", case.text.clone());
+    let mut manifest = Manifest::begin("0.1.0", argv, reported);
     manifest.grid = Some(GridExtent { lower: vec![0.0; 2], upper: vec![40.0, 12.0], cell: vec![1.0; 2] });
     let directory = OutputDirectory::hold(directory, Unseen::Respect)
         .and_then(|held| held.claim(Existing::Delete, &manifest))
@@ -238,7 +238,7 @@ fn a_trial_that_breaks_ends_the_search_with_its_code() {
 }
 
 #[test]
-fn a_body_that_never_stands_or_never_fails_is_told_so() {
+fn a_body_that_never_stands_or_never_fails_is_reported() {
     let bench = Bench::new(SLOPE, "kink=0.3");
     let output = bench.fos(&[]);
     let said = text(&output.stderr);
@@ -262,7 +262,7 @@ fn a_case_that_records_no_displacement_gets_it_recorded() {
 }
 
 #[test]
-fn weight_that_comes_at_once_and_soft_soil_are_mended_and_told() {
+fn weight_that_comes_at_once_and_soft_soil_are_mended_and_reported() {
     let of = |set: &[&str]| {
         let bench = Bench::new(SLOPE, "kink=1.373");
         let options: Vec<&str> = set.iter().flat_map(|set| ["--set", *set]).collect();
@@ -280,13 +280,13 @@ fn weight_that_comes_at_once_and_soft_soil_are_mended_and_told() {
     let (said, found, _) = of(&["gravity.ramp=0.0", "initial.k0=0.5"]);
     assert!(said.contains("note: the case begins with a stress ([initial])"), "{said}");
     assert_eq!(found["elastic_displacement"], as_it_is["elastic_displacement"]);
-    // The weight of 10 m over E: .2 % as it is, 2 % with a tenth of E.
+    // The weight of 10 m over E: 0.2 % as it is, 2 % with a tenth of E.
     let (said, found, run) = of(&["material.soil.young=1e7"]);
     assert!(
         said.contains("note: the trials have 10 times the case's stiffness") && said.contains("E = 10 MPa, times 10")
     );
     assert!(found["conditions"]["stiffness"] == 10.0 && run.contains("stiffness = 10.0"), "{run}");
-    // The stub moves as far whatever the stiffness: told as of the case's own it is ten times that.
+    // The stub moves as far whatever the stiffness: reported as of the case's own it is ten times that.
     let displacement = |found: &Value| found["elastic_displacement"].as_f64().unwrap();
     assert!((displacement(&found) / displacement(&as_it_is) - 10.0).abs() < 1e-12);
     assert_eq!(found["factor_of_safety"], as_it_is["factor_of_safety"]);
@@ -327,7 +327,7 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
     let bench = Bench::new(SLOPE, "kink=1.373");
     let strip = "footing={ from = [0.0, 10.0], to = [2.0, 10.0], displacement = [0.0, -0.1] }";
     let wall = "rigid=[{ name = \"wall\", polygon = [[34, 0], [36, 0], [36, 4]], displacement = [-0.1, 0.0] }]";
-    for (set, told) in [
+    for (set, reported) in [
         (vec!["solver.tolerance=2e-3"], "solver.tolerance = 2e-3 is too loose"),
         (vec!["solver.force_tolerance=1e-2"], "solver.force_tolerance = 1e-2 is too loose"),
         (vec!["analysis.type=dynamic"], "needs a quasi-static analysis"),
@@ -365,7 +365,7 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
         let options: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
         let output = bench.fos(&options);
         let said = text(&output.stderr);
-        assert!(output.status.code() == Some(65) && said.contains(told), "{set:?}: {output:?}");
+        assert!(output.status.code() == Some(65) && said.contains(reported), "{set:?}: {output:?}");
     }
     let stage = "stage=[{ at = 0.5, name = \"dug\", reset_displacements = true }]";
     let output = bench.fos(&["--set", stage, "--stage", "start"]);

@@ -9,8 +9,8 @@ use std::time::Duration;
 use crate::quasi_static::FOOTING;
 use crate::still::Still;
 
-/// The solver: it notes what it was asked for and hands out the run, as far as t = .475 where it is to stop, and with
-/// .8 times the penetration where it is to be stiffer.
+/// The solver: it notes what it was asked for and hands out the run, as far as t = 0.475 where it is to stop, and with
+/// 0.8 times the penetration where it is to be stiffer.
 const STUB: &str = r#"#!/bin/sh
 echo "$@" >> calls.txt
 case "$*" in *explode*) echo 'it blew up'; exit 70;; esac
@@ -77,7 +77,7 @@ source    = "the path"
 tolerance = 1e-9
 
 [[study.row]]
-quantity = "penetration, told"
+quantity = "penetration, reported"
 run      = "f-bar"
 column   = "penetration"
 
@@ -143,7 +143,7 @@ fn a_failed_row_and_a_failed_run_fail_the_validation() {
 #[test]
 fn what_is_known_to_fail_fails_in_its_band_and_nowhere_else() {
     let dir = tempfile::tempdir().unwrap();
-    for (part, by, last, told) in [
+    for (part, by, last, reported) in [
         ("min = 1.9, max = 2.1", "min = 2.1, max = 2.2", "1 passed, 1 failed", " FAIL "),
         ("min = 1.9, max = 2.1", "min = 1.0, max = 1.9", "1 passed, 1 failed", " FAIL "),
         ("max      = 0.1", "max      = 2.0", "1 passed, 1 failed", "FAIL, holds now"),
@@ -154,7 +154,7 @@ fn what_is_known_to_fail_fails_in_its_band_and_nowhere_else() {
         prepare(dir.path(), &matrix);
         let text = printed(&validate(dir.path(), &["--short"]));
         let row = text.lines().find(|line| line.contains("too deep")).unwrap();
-        assert!(row.contains(told) && text.lines().last() == Some(last), "{text}");
+        assert!(row.contains(reported) && text.lines().last() == Some(last), "{text}");
     }
 }
 
@@ -187,7 +187,7 @@ fn where_nothing_is_judged_nothing_passes() {
 #[test]
 fn a_matrix_with_mistakes_is_refused_before_anything_runs() {
     let dir = tempfile::tempdir().unwrap();
-    for (part, by, told) in [
+    for (part, by, reported) in [
         ("tolerance = 1e-9", "tolerence = 1e-9", "tolerence"),
         ("run       = \"f-bar\"", "run       = \"g-bar\"", "there is no run \"g-bar\""),
         ("reference = 0.975", "", "a tolerance needs a reference"),
@@ -213,7 +213,7 @@ fn a_matrix_with_mistakes_is_refused_before_anything_runs() {
         prepare(dir.path(), &MATRIX.replacen(part, by, 1));
         let output = validate(dir.path(), &[]);
         let message = String::from_utf8(output.stderr.clone()).unwrap();
-        assert!(output.status.code() == Some(65) && message.contains(told), "{output:?}");
+        assert!(output.status.code() == Some(65) && message.contains(reported), "{output:?}");
         assert!(!dir.path().join("calls.txt").exists());
     }
 }
@@ -240,7 +240,7 @@ case  = "case.toml"
 depth = "full"
 
 [[study.row]]
-quantity  = "time where it is .5 deep"
+quantity  = "time where it is 0.5 deep"
 run       = "half"
 column    = "time"
 where     = { column = "penetration", value = 0.51 }
@@ -258,7 +258,7 @@ reference = 4.2
 tolerance = 1e-9
 
 [[study.row]]
-quantity = "deeper, told"
+quantity = "deeper, reported"
 run      = "half"
 column   = "p_over_c"
 at       = 0.5
@@ -343,13 +343,13 @@ fn rows_are_taken_from_a_run_as_far_as_it_came() {
     assert_eq!((output.status.code(), text.lines().last()), (Some(77), Some("5 passed, 4 failed")), "{text}");
     let row = |quantity: &str| text.lines().find(|line| line.contains(quantity)).unwrap().to_owned();
     assert!(row("mean depth").contains(" 4.2 "), "{text}");
-    assert!(row("deeper, told").contains(" none ") && row("deeper, told").contains(" not reached "), "{text}");
+    assert!(row("deeper, reported").contains(" none ") && row("deeper, reported").contains(" not reached "), "{text}");
     assert!(
         row("deeper, judged").contains("FAIL, not reached") && row("judged").contains("penetration 0.95"),
         "{text}"
     );
-    assert!(row("deeper, told").contains("stopped at t = 0.4750"), "{text}");
-    // What has no end tells nothing about the whole, and that a solver gives up is no failure load.
+    assert!(row("deeper, reported").contains("stopped at t = 0.4750"), "{text}");
+    // What has no end says nothing about the whole, and that a solver gives up is no failure load.
     assert!(row("largest to its end").contains("FAIL, not reached") && row("at its end").contains("FAIL, not reached"));
     assert!(row("no kink").contains("no kink before its end") && row("no kink").contains(" FAIL "), "{text}");
     assert!(row("where it stops").contains("FAIL, known") && row("how even it is").contains(" pass "), "{text}");
@@ -377,7 +377,7 @@ fn runs_that_are_there_are_made_again_only_when_something_has_changed() {
     fs::write(path("case.toml"), "title = \"another\"\n").unwrap();
     fs::File::options().write(true).open(path("case.toml")).unwrap().set_modified(old).unwrap();
     assert_eq!((calls(&[]), calls(&[])), (1, 0));
-    // The solver is another one, or what it is told.
+    // The solver is another one, or what it is given.
     fs::File::options().write(true).open(path("solver")).unwrap().set_modified(old).unwrap();
     assert_eq!((calls(&[]), calls(&[])), (1, 0));
     fs::write(path("matrix.toml"), MATRIX.replace("background=1e-3", "background=1e-4")).unwrap();

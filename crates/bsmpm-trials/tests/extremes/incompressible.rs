@@ -13,7 +13,7 @@ use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
 
-/// Height of Hencky's confined column under rho0 g l0 / M = .4, M the oedometric modulus, over its first one.
+/// Height of Hencky's confined column under rho0 g l0 / M = 0.4, M the oedometric modulus, over its first one.
 const SETTLED: f64 = 0.853_305_216_7;
 
 /// Error of the height of a confined column of 20 cells, gravity in ten steps, over its length; or the physics' reason,
@@ -22,17 +22,17 @@ pub fn confined(poisson: f64, method: Stabilisation) -> Found {
     column(poisson, method, 1.0)
 }
 
-/// The largest error of so many columns that differ by round-off alone, where it decides what is found; told if all
+/// The largest error of so many columns that differ by round-off alone, where it decides what is found; reported if all
 /// are.
 pub fn confined_by_round_off(poisson: f64, method: Stabilisation, columns: i32) -> Found {
     let mut worst = None;
     for k in 0..columns {
         let found = column(poisson, method, 1.0 + f64::from(k) * 1e-13);
         worst = match (worst, found) {
-            (Some(Found::Figure(before, told)), Found::Figure(now, _)) if before >= now => {
-                Some(Found::Figure(before, told))
+            (Some(Found::Figure(before, reported)), Found::Figure(now, _)) if before >= now => {
+                Some(Found::Figure(before, reported))
             }
-            (Some(before @ Found::Figure(..)), Found::Told(..)) => Some(before),
+            (Some(before @ Found::Figure(..)), Found::Warned(..)) => Some(before),
             (Some(before @ Found::Broken(_)), _) => Some(before),
             (_, found) => Some(found),
         };
@@ -55,7 +55,7 @@ fn column(poisson: f64, method: Stabilisation, factor: f64) -> Found {
     scene.model.criteria = Criteria { energy: 1e-8, force: 1e-5, max_iterations: 1000 };
     if let Err(failure) = march(&mut scene) {
         let reason = failure.attempts.last().map(ToString::to_string).unwrap_or_default();
-        return Found::Told(80, format!("t = {:.4}: {reason}", failure.t));
+        return Found::Warned(80, format!("t = {:.4}: {reason}", failure.t));
     }
     let points = &scene.points;
     let top = (0..points.len()).max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1])).expect("points");
@@ -73,13 +73,13 @@ fn march(scene: &mut Scene<PlaneStrain, 2>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// p/c of the coarse footing at z/B = .1.
+/// p/c of the coarse footing at z/B = 0.1.
 pub fn footing(poisson: f64, method: &'static str) -> Found {
     let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
     run.found(|run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))
 }
 
-/// Root mean square of the pressure about the planes of neighbouring cells, under the footing at z/B = .1, over the
+/// Root mean square of the pressure about the planes of neighbouring cells, under the footing at z/B = 0.1, over the
 /// mean of its absolute value.
 pub fn checkerboard(poisson: f64, method: &'static str) -> Found {
     let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
@@ -91,7 +91,7 @@ pub fn checkerboard(poisson: f64, method: &'static str) -> Found {
     })
 }
 
-/// Iterations of the footing with this Poisson's ratio over those with .3.
+/// Iterations of the footing with this Poisson's ratio over those with 0.3.
 pub fn iterations(poisson: f64, method: &'static str) -> Found {
     let [many, few] = [poisson, 0.3].map(|poisson| {
         let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
@@ -100,7 +100,7 @@ pub fn iterations(poisson: f64, method: &'static str) -> Found {
     Found::Figure(many / few, format!("{many} for {few}"))
 }
 
-/// A cantilever 8 m long and 1 m thick with a small force at its end: deflection with this ratio over that with .495,
+/// A cantilever 8 m long and 1 m thick with a small force at its end: deflection with this ratio over that with 0.495,
 /// both with the same E / (1 - nu^2), less one.
 pub fn bending(poisson: f64, method: &'static str) -> Found {
     let run = |poisson: f64| {
@@ -121,7 +121,7 @@ pub fn bending(poisson: f64, method: &'static str) -> Found {
     run(poisson).found(|run| Found::Figure((run.last("tip-y") / reference - 1.0).abs(), run.effort()))
 }
 
-/// Whether a case with this ratio is told to be nearly incompressible.
+/// Whether a case with this ratio is asked to be nearly incompressible.
 pub fn warned(poisson: f64) -> Found {
     let text = Footing { poisson, steps: 100, depth: 1e-3, ..Footing::default() }.text();
     Run::of(&text, 1, &["--max-steps", "1"]).found_or_warned("nearly incompressible", |_| f64::NAN)

@@ -149,7 +149,7 @@ pub fn held(method: &str) -> Found {
     Run::of(&text, 1, &[]).found(|run| Found::Figure(run.last("max-displacement") / settlement, run.effort()))
 }
 
-/// The footing to z/B = .1 with 8, 16, 32 and 64 steps: largest ratio of the change of p/c by a doubling to the change
+/// The footing to z/B = 0.1 with 8, 16, 32 and 64 steps: largest ratio of the change of p/c by a doubling to the change
 /// before; or a warning that results belong to their number of steps.
 pub fn step_count(method: &'static str) -> Found {
     let runs = [8, 16, 32, 64].map(|steps| Run::of(&Footing { method, steps, ..Footing::default() }.text(), 1, &[]));

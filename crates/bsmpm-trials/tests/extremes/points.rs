@@ -30,7 +30,7 @@ pub fn stretched(per_cell: usize, stretch: f64) -> Found {
     })
 }
 
-/// p/c of the coarse footing at z/B = .1 with so many points a cell and axis; or a warning that they are too few.
+/// p/c of the coarse footing at z/B = 0.1 with so many points a cell and axis; or a warning that they are too few.
 pub fn footing(per_cell: usize) -> Found {
     let run = Run::of(&Footing { per_cell, ..Footing::default() }.text(), 1, &[]);
     run.found_or_warned("too coarsely", |run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))

@@ -86,7 +86,7 @@ impl Collapse {
     }
 }
 
-/// The coarse strip footing of half a cell per .5 m, pushed to `depth` m in `steps` steps.
+/// The coarse strip footing of half a cell per 0.5 m, pushed to `depth` m in `steps` steps.
 pub struct Footing {
     pub poisson: f64,
     pub method: &'static str,
@@ -160,7 +160,7 @@ pub fn layers(layers: &[(f64, f64, f64)], further: &str, steps: usize, accelerat
     )
 }
 
-/// A free elastic block of 5 x 5 cells of .5 m, 100 points, with a velocity, for `steps` steps of 1 ms.
+/// A free elastic block of 5 x 5 cells of 0.5 m, 100 points, with a velocity, for `steps` steps of 1 ms.
 pub fn block(velocity: [f64; 2], steps: usize, further: &str) -> String {
     let [x, y] = velocity;
     format!(

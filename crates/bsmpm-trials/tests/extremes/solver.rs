@@ -56,15 +56,15 @@ impl Run {
             Some(code @ (80 | 81)) => {
                 all_finite(&self.directory());
                 let failure = self.manifest().failure.expect("a reason");
-                Found::Told(code, format!("t = {:.4}: {}", failure.time, first_sentence(&failure.reason)))
+                Found::Warned(code, format!("t = {:.4}: {}", failure.time, first_sentence(&failure.reason)))
             }
             Some(82) => {
                 all_finite(&self.directory());
                 let failed = self.manifest().indicators.into_iter().find(|(_, indicator)| indicator.failed);
                 let (name, indicator) = failed.expect("an indicator beyond its limit");
-                Found::Told(82, format!("{name} is {:.2}: {}", indicator.value, indicator.meaning))
+                Found::Warned(82, format!("{name} is {:.2}: {}", indicator.value, indicator.meaning))
             }
-            Some(65) => Found::Told(65, first_sentence(&self.output.stderr)),
+            Some(65) => Found::Warned(65, first_sentence(&self.output.stderr)),
             code => Found::Broken(format!("exit code {code:?}: {}", self.output.stderr)),
         }
     }
@@ -76,7 +76,7 @@ impl Run {
         match (self.found(value), warned.flatten()) {
             (Found::Figure(value, _), Some(warning)) => {
                 let figure = if value.is_finite() { format!("; figure {value:.3}") } else { String::new() };
-                Found::Told(0, first_sentence(&warning) + &figure)
+                Found::Warned(0, first_sentence(&warning) + &figure)
             }
             (found, _) => found,
         }

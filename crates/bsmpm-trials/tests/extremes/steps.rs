@@ -102,10 +102,10 @@ pub fn ringing(dt: f64) -> Found {
     Found::Figure(after / before.max(1e-10), format!("{before:.1e}, then {after:.1e} of the settlement"))
 }
 
-/// Where the farthest points of the collapse start, m: half a spacing of 5 mm within its face at .2 m.
+/// Where the farthest points of the collapse start, m: half a spacing of 5 mm within its face at 0.2 m.
 const FARTHEST: f64 = 0.1975;
 
-/// The collapse with steps of `dt` s: error of the way of its front at `end`, over that with .5 ms.
+/// The collapse with steps of `dt` s: error of the way of its front at `end`, over that with 0.5 ms.
 pub fn collapse(dt: f64, end: f64) -> Found {
     let run = |dt: f64| Run::of(&Collapse { end, dt, ..Collapse::default() }.text(), 1, &[]);
     let way = |run: &Run| run.last("runout") - FARTHEST;
@@ -114,9 +114,9 @@ pub fn collapse(dt: f64, end: f64) -> Found {
     let error = (way(&run) / reference - 1.0).abs();
     let advance = run.manifest().indicators.remove("step-advance").filter(|indicator| indicator.unusual);
     match advance {
-        Some(told) => Found::Told(
-            if told.failed { 82 } else { 0 },
-            format!("step-advance is {:.2}: {}; figure {error:.3}", told.value, told.meaning),
+        Some(reported) => Found::Warned(
+            if reported.failed { 82 } else { 0 },
+            format!("step-advance is {:.2}: {}; figure {error:.3}", reported.value, reported.meaning),
         ),
         None => run.found(|run| Found::Figure(error, run.effort())),
     }
@@ -135,7 +135,7 @@ pub fn degenerate_broyden() -> f64 {
     broken as f64
 }
 
-/// The footing on nearly incompressible clay by Broyden's update, with more iterations than it keeps: p/c at z/B = .1.
+/// The footing on nearly incompressible clay by Broyden's update, with more iterations than it keeps: p/c at z/B = 0.1.
 pub fn long_broyden() -> Found {
     let text = Footing { poisson: 0.4999, solver: "nonlinear = \"broyden\"", ..Footing::default() }.text();
     Run::of(&text, 1, &[]).found(|run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))

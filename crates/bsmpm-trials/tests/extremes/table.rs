@@ -34,7 +34,7 @@ pub enum Found {
     /// a number, and what its reader should know
     Figure(f64, String),
     /// no number, but a reason: exit code 65, 80 or 82 of the program, or 0 with a warning
-    Told(i32, String),
+    Warned(i32, String),
     /// neither: a crash, a hang, numbers that are none
     Broken(String),
 }
@@ -106,13 +106,13 @@ impl Row {
         };
         let (figure, remark) = match found {
             Found::Figure(value, remark) => (number(*value), remark.clone()),
-            Found::Told(0, reason) => ("warned".into(), reason.clone()),
-            Found::Told(code, reason) => (format!("exit {code}"), reason.clone()),
+            Found::Warned(0, reason) => ("warned".into(), reason.clone()),
+            Found::Warned(code, reason) => (format!("exit {code}"), reason.clone()),
             Found::Broken(reason) => ("none".into(), first_line(reason)),
         };
         let remarks = [remark.as_str(), self.known.unwrap_or_default()].map(str::to_owned);
         let remark = remarks.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
-        let refusal = if self.may_refuse { ", or told" } else { "" };
+        let refusal = if self.may_refuse { ", or a warning" } else { "" };
         let (id, what, verdict) = (self.id.to_owned(), self.what.to_owned(), verdict.word().to_owned());
         [id, what, figure, limit + refusal, verdict, format!("{seconds:.1}"), remark]
     }
@@ -126,7 +126,7 @@ impl Row {
                 Limit::Same => *value == 0.0,
                 Limit::Reported => true,
             },
-            Found::Told(code, reason) => self.may_refuse && [0, 65, 80, 82].contains(code) && !reason.is_empty(),
+            Found::Warned(code, reason) => self.may_refuse && [0, 65, 80, 82].contains(code) && !reason.is_empty(),
             Found::Broken(_) => false,
         }
     }

@@ -46,7 +46,7 @@ pub fn collapse(method: &'static str) -> Found {
     differing(|units| Collapse { units, method, end: 0.02, ..Collapse::default() }.text())
 }
 
-/// The footing to z/B = .1.
+/// The footing to z/B = 0.1.
 pub fn footing(method: &'static str) -> Found {
     differing(|units| Footing { units, method, ..Footing::default() }.text())
 }

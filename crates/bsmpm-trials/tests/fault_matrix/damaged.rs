@@ -171,7 +171,7 @@ pub fn other_form(ground: &Ground, _: usize) -> Tried {
     tried.figure(|_| "76, with both numbers".into())
 }
 
-/// Changes of one array that no writer of ours makes, with what is told of them; the record's hashes are true.
+/// Changes of one array that no writer of ours makes, with what is reported of them; the record's hashes are true.
 const FORGED: [(&str, &str, &str); 18] = [
     ("huge", "b_e", "is not as its record says"),
     ("empty", "b_e", "is not as its record says"),
@@ -193,7 +193,7 @@ const FORGED: [(&str, &str, &str); 18] = [
     ("stranger", "b_e", "cannot be used"),
 ];
 
-/// One number of an array, as 64 bits, with what is told of it.
+/// One number of an array, as 64 bits, with what is reported of it.
 const NUMBERS: [(&str, usize, u64, &str); 16] = [
     ("id", 7, 8, "is there twice"),
     ("id", 7, 1 << 40, "is there twice"),

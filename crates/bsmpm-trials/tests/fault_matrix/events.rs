@@ -32,7 +32,7 @@ fn owners(frame: &Frame, slabs: &[usize]) -> BTreeMap<u64, usize> {
 
 /// Plastic flow from about the fifth step, points that change their rank before the fifteenth, a step that is cut.
 pub fn all(ground: &Ground, _: usize) -> Tried {
-    let mut told = String::new();
+    let mut reported = String::new();
     let tried = trials(1, |_| {
         let trial = seen(ground);
         let frames = all_frames(&trial.directory());
@@ -43,9 +43,9 @@ pub fn all(ground: &Ground, _: usize) -> Tried {
         let moved = ranks.windows(2).flat_map(|two| two[0].iter().filter(|(id, rank)| two[1][id] != **rank)).count();
         let steps = steps(&trial.directory());
         let cuts = steps.get("cutbacks").unwrap().iter().position(|&cuts| cuts > 0.0).map_or(0, |row| row + 1);
-        told = format!("{flowing} points flow at step 5, {moved} change ranks by 15, step {cuts} is cut");
-        assert!(flowing > 50 && moved >= 50 && (20..=26).contains(&cuts), "{told}");
+        reported = format!("{flowing} points flow at step 5, {moved} change ranks by 15, step {cuts} is cut");
+        assert!(flowing > 50 && moved >= 50 && (20..=26).contains(&cuts), "{reported}");
         moved as f64
     });
-    tried.figure(|_| told.clone())
+    tried.figure(|_| reported.clone())
 }

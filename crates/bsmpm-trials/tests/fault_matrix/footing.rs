@@ -60,7 +60,7 @@ impl Runs {
 
 /// Runs it both ways.
 pub fn killed(_: &Ground, _: usize) -> Tried {
-    let mut told = String::new();
+    let mut reported = String::new();
     let tried = trials(1, |_| {
         let case = shipped("short/strip_footing.toml").to_str().unwrap().to_owned();
         let runs = Runs { case, scratch: Scratch::new() };
@@ -75,9 +75,9 @@ pub fn killed(_: &Ground, _: usize) -> Tried {
         let difference = one.iter().zip(other).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / largest;
         let ranks: Vec<String> =
             manifest(&directories[1]).restarts.iter().map(|restart| restart.ranks.to_string()).collect();
-        told = format!("killed after steps {at:?}; went on on {} ranks; p/c to {largest:.2}", ranks.join(", "));
-        assert!(difference <= TOLERATED, "{difference:e}: {told}");
+        reported = format!("killed after steps {at:?}; went on on {} ranks; p/c to {largest:.2}", ranks.join(", "));
+        assert!(difference <= TOLERATED, "{difference:e}: {reported}");
         difference
     });
-    tried.figure(|difference| format!("pressure differs by {difference}, relative")).remark(&told)
+    tried.figure(|difference| format!("pressure differs by {difference}, relative")).remark(&reported)
 }

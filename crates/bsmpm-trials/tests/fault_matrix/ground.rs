@@ -119,7 +119,7 @@ impl Trial {
         running
     }
 
-    /// Steps that it has told of so far.
+    /// Steps that it has reported so far.
     pub fn made(&self) -> u64 {
         let text = std::fs::read_to_string(self.directory().join("steps.csv")).unwrap_or_default();
         text.lines().count().saturating_sub(2) as u64
@@ -184,7 +184,7 @@ fn copy_all(from: &Path, to: &Path) {
 }
 
 /// Everything that must be the same: histories, steps but for the seconds and messages that they took (who goes on
-/// numbers the unknowns anew), frames, the state at the end.
+/// numbers the unknowns again), frames, the state at the end.
 pub fn results(directory: &Path) -> Results {
     let read = |name: &str| (name.to_owned(), std::fs::read(directory.join(name)).unwrap());
     let mut results: Results = ["history.csv", LIST].map(read).into();

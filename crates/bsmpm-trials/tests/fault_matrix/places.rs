@@ -208,7 +208,7 @@ pub fn clock(ground: &Ground, _: usize) -> Tried {
         let today = bsmpm_io::utc::now();
         assert_ne!(found.start[..10], today[..10], "the clock was set");
         let (wall, elapsed) = (found.timers["wall"], output.elapsed.as_secs_f64());
-        assert!((0.0..=elapsed).contains(&wall), "run.json tells {wall} s of {elapsed}");
+        assert!((0.0..=elapsed).contains(&wall), "run.json reports {wall} s of {elapsed}");
         0.0
     });
     tried.figure(|_| "days ahead and behind: no limit reached, B".into())

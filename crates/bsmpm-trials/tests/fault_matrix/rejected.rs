@@ -13,9 +13,9 @@ fn fault(step: u64) -> String {
 
 #[track_caller]
 fn was_rejected(run: &Path, step: u64) {
-    let told = format!("step {step} converged and was rejected");
+    let reported = format!("step {step} converged and was rejected");
     let warnings = manifest(run).warnings;
-    assert_eq!(warnings.iter().filter(|warning| warning.contains(&told)).count(), 1, "{warnings:?}");
+    assert_eq!(warnings.iter().filter(|warning| warning.contains(&reported)).count(), 1, "{warnings:?}");
 }
 
 /// The first step, the one that is cut, and others all over the run, on one and on two ranks.

@@ -33,7 +33,7 @@ pub fn left(scratch: &Scratch, name: &str) -> Results {
 
 /// Every case of a folder, or some, stopped half way and after its second step. At most `most` steps of each are made.
 fn recovered(cases: &[PathBuf], most: u64) -> Tried {
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     let tried = trials(cases.len() * 2, |index| {
         let case = cases[index / 2].to_str().unwrap();
         let scratch = Scratch::new();
@@ -53,11 +53,11 @@ fn recovered(cases: &[PathBuf], most: u64) -> Tried {
         assert_eq!(manifest(&scratch.path("part")).restarts.len(), 1, "{case}");
         same(&left(&scratch, "part"), &left(&scratch, "whole"));
         if index % 2 == 0 {
-            told.push(format!("{} {steps}", cases[index / 2].file_stem().unwrap().to_string_lossy()));
+            reported.push(format!("{} {steps}", cases[index / 2].file_stem().unwrap().to_string_lossy()));
         }
         steps as f64
     });
-    tried.figure(|_| format!("{} cases", cases.len())).remark(&format!("steps: {}", told.join(", ")))
+    tried.figure(|_| format!("{} cases", cases.len())).remark(&format!("steps: {}", reported.join(", ")))
 }
 
 pub fn cases(folder: &str) -> Vec<PathBuf> {
@@ -100,7 +100,7 @@ pub fn intervals(ground: &Ground, _: usize) -> Tried {
 /// Half of the run on some ranks, the rest on others.
 pub fn other_ranks(ground: &Ground, _: usize) -> Tried {
     let whole = ground.whole(2);
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     let ways = [(2, 1), (2, 3), (2, 4), (4, 2)];
     let tried = trials(ways.len(), |index| {
         let (before, after) = ways[index];
@@ -110,14 +110,14 @@ pub fn other_ranks(ground: &Ground, _: usize) -> Tried {
         trial.has_warned(&format!("restart on {after} rank(s) of a checkpoint of {before}"));
         let found = differences(&last_frame(&trial.directory()), &last_frame(&whole.scratch.path("run")));
         let (name, largest) = found.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
-        told.push(format!("{before} -> {after}: {largest:.0e} ({name})"));
+        reported.push(format!("{before} -> {after}: {largest:.0e} ({name})"));
         let counts = [&trial.directory(), &whole.scratch.path("run")].map(|run| manifest(run).summary.steps);
         assert_eq!(counts[0], counts[1], "steps");
         // Round-off of single precision in the factor, which steps that are accepted at 1e-8 keep.
         assert!(largest <= 1e-6, "{name} differs by {largest:e}");
         largest
     });
-    tried.figure(|largest| format!("last frame, relative: {largest}")).remark(&told.join(", "))
+    tried.figure(|largest| format!("last frame, relative: {largest}")).remark(&reported.join(", "))
 }
 
 /// The same run again while ranks are stopped and let go at random.
@@ -141,7 +141,7 @@ pub fn repeated(ground: &Ground, count: usize) -> Tried {
     tried.figure(|_| "on 1, 2 and 4 ranks, with ranks that pause".into())
 }
 
-/// Keys with which a checkpoint is of another case, with what must be told of them.
+/// Keys with which a checkpoint is of another case, with what must be reported of them.
 const BOUND: [(&str, &str); 9] = [
     ("material.clay.poisson=0.31", "material.clay.poisson was 0.3, and is 0.31"),
     ("material.clay.cohesion=\"6 kPa\"", "material.clay.cohesion was 5000.0, and is 6000.0"),
@@ -169,7 +169,7 @@ pub fn other_case(ground: &Ground, _: usize) -> Tried {
             trial.scratch.direct(&[&[case, "-o", "run", "--restart", from], further].concat()).expect(76)
         };
         match BOUND.get(index / 2) {
-            Some((set, told)) => run("case.toml", &["--set", set]).says_once(told),
+            Some((set, reported)) => run("case.toml", &["--set", set]).says_once(reported),
             None => run("named.toml", &[]).says_once("material.loam.cohesion was not given, and is 5000.0"),
         }
         assert!(std::fs::read(trial.directory().join("run.json")).unwrap() == before, "the run is touched");
@@ -178,7 +178,7 @@ pub fn other_case(ground: &Ground, _: usize) -> Tried {
     tried.figure(|_| "76, with the key and both values".into())
 }
 
-/// Keys that may change, which `run.json` tells.
+/// Keys that may change, which `run.json` reports.
 pub fn free_keys(ground: &Ground, _: usize) -> Tried {
     let free = [
         ("title=\"another\"", "title"),
@@ -196,7 +196,7 @@ pub fn free_keys(ground: &Ground, _: usize) -> Tried {
         assert!(changed.len() == 1 && changed[0].starts_with(key), "{changed:?}");
         0.0
     });
-    tried.figure(|_| "goes on, run.json tells the change".into())
+    tried.figure(|_| "goes on, run.json reports the change".into())
 }
 
 /// Steps that cannot converge end the run with 80; it goes on with shorter ones, or as if that had not been.

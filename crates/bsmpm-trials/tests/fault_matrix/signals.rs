@@ -62,7 +62,7 @@ pub fn usr2(ground: &Ground, count: usize) -> Tried {
     tried.figure(|frames| format!("{frames} frame more at most"))
 }
 
-/// TERM to mpirun where it leaves the time: it waits a second before it tells the ranks, and another before it kills
+/// TERM to mpirun where it leaves the time: it waits a second before it signals the ranks, and another before it kills
 /// them. Its own code is 1.
 pub fn term(ground: &Ground, count: usize) -> Tried {
     let patient = [("OMPI_MCA_odls_base_sigkill_timeout", "1")];

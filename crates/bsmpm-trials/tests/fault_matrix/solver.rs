@@ -43,7 +43,7 @@ pub fn diverging(_: &Ground, _: usize) -> Tried {
         let failure = fails(COLUMN, &[&["--"], options].concat());
         let attempts = attempts(&failure);
         assert_eq!(attempts.len(), CUTS + 1);
-        assert!(attempts.iter().all(|told| told.contains(reason)), "{reason}: {attempts:?}");
+        assert!(attempts.iter().all(|warning| warning.contains(reason)), "{reason}: {attempts:?}");
         0.0
     });
     tried
@@ -78,12 +78,12 @@ const COARSE: [&str; 8] = [
     "grid.upper=[4.0,8.0]",
 ];
 
-/// What is told of an attempt that turned material inside out.
+/// What is reported of an attempt that turned material inside out.
 const INVERTED: &str = "inverted or not finite";
 
 /// Material that is turned inside out: shorter steps help, or nothing does.
 pub fn folded(_: &Ground, _: usize) -> Tried {
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     let tried = trials(2, |index| {
         let inverted = if index == 0 {
             let failure = fails(&format!("{COLUMN}{CROSSING}"), &COARSE);
@@ -97,11 +97,11 @@ pub fn folded(_: &Ground, _: usize) -> Tried {
             all_finite(&scratch.path(RUN));
             output.count(INVERTED)
         };
-        told.push(inverted.to_string());
+        reported.push(inverted.to_string());
         assert!(inverted > 0, "no attempt turned material inside out");
         0.0
     });
     tried
-        .figure(|_| format!("cuts, then 80, or the end; inverted {}", told.join(" and ")))
+        .figure(|_| format!("cuts, then 80, or the end; inverted {}", reported.join(" and ")))
         .remark("det F <= 0 in a checkpoint: F26")
 }

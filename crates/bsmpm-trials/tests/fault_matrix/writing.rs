@@ -112,7 +112,8 @@ pub fn full_disk(ground: &Ground, count: usize) -> Tried {
     tried.figure(|_| "74 with bytes needed and left; then B".into())
 }
 
-/// A disk that is seen to be too small before the first step; what is told that the run may need, over what it takes.
+/// A disk that is seen to be too small before the first step; what is reported that the run may need, over what it
+/// takes.
 pub fn foreseen(ground: &Ground, _: usize) -> Tried {
     let whole = ground.whole(2);
     let (frame, checkpoint) = sizes(ground);
@@ -121,7 +122,7 @@ pub fn foreseen(ground: &Ground, _: usize) -> Tried {
     if Disk::new(Scratch::new().path("disk"), 1 << 20).is_none() {
         return Tried::not("no right to mount a disk");
     }
-    let told = "the run may write ";
+    let reported = "the run may write ";
     let tried = trials(3, |index| {
         let trial = ground.trial(2);
         let room = if index == 2 { 2 * takes } else { takes - checkpoint };
@@ -130,20 +131,20 @@ pub fn foreseen(ground: &Ground, _: usize) -> Tried {
         match index {
             0 => {
                 let output = trial.start(&short, &[]).end().expect(74);
-                output.says_once(told);
+                output.says_once(reported);
                 assert_eq!(entries(&trial.directory()), [""; 0]);
-                let mebibytes = output.said().split_once(told).unwrap().1.split_once(' ').unwrap().0.parse::<f64>();
+                let mebibytes = output.said().split_once(reported).unwrap().1.split_once(' ').unwrap().0.parse::<f64>();
                 let ratio = mebibytes.unwrap() * f64::from(1 << 20) / takes as f64;
                 assert!((0.95..1.5).contains(&ratio), "{ratio}");
                 return ratio;
             }
             1 => {
                 trial.start(&short[..2], &[]).end().expect(75);
-                trial.has_warned(told);
+                trial.has_warned(reported);
             }
             _ => {
                 trial.start(&short, &[]).end().expect(75);
-                assert!(!manifest(&trial.directory()).warnings.iter().any(|warning| warning.contains(told)));
+                assert!(!manifest(&trial.directory()).warnings.iter().any(|warning| warning.contains(reported)));
             }
         }
         drop(disk);
@@ -183,7 +184,7 @@ pub fn full_frames(ground: &Ground, count: usize) -> Tried {
         let disk = Disk::new(trial.directory().join("frames"), room).expect("a disk");
         let output = trial.start(&[], &[]).end().expect(74);
         assert!(output.said().contains("frames/"), "{output:?}");
-        assert_eq!(manifest(&trial.directory()).exit_code, Some(74), "run.json tells how it ended");
+        assert_eq!(manifest(&trial.directory()).exit_code, Some(74), "run.json reports how it ended");
         let frames = entries(&trial.directory().join("frames"));
         assert!(frames.iter().all(|name| size(&disk.0.join(name)) > 100_000), "half a frame: {frames:?}");
         disk.grow();
@@ -192,9 +193,9 @@ pub fn full_frames(ground: &Ground, count: usize) -> Tried {
     tried.figure(|lost| format!("74, {lost} steps are lost at most; then B"))
 }
 
-/// System calls on a checkpoint's files, in order: the shortest form of each line that strace tells.
+/// System calls on a checkpoint's files, in order: the shortest form of each line that strace reports.
 fn calls(trace: &str) -> Vec<String> {
-    let told = |line: &str| -> Option<String> {
+    let reports = |line: &str| -> Option<String> {
         let name = line.split('(').next()?.split_whitespace().last()?.to_owned();
         let what = ["fsync", "fdatasync", "rename", "renameat", "renameat2", "unlink", "unlinkat"];
         if !what.contains(&name.as_str()) || !line.contains("/checkpoint") || line.contains("= -1") {
@@ -210,7 +211,7 @@ fn calls(trace: &str) -> Vec<String> {
         let file = ["json", "h5"].into_iter().find(|ending| line.contains(&format!(".{ending}")));
         Some(format!("{kind} {}", file.unwrap_or("folder")))
     };
-    trace.lines().filter_map(told).collect()
+    trace.lines().filter_map(reports).collect()
 }
 
 /// A run under strace; none where that is not there or not allowed.
@@ -265,8 +266,8 @@ pub fn slow(ground: &Ground, _: usize) -> Tried {
         same(&results(&trial.directory()), &whole.results);
         let timers = manifest(&trial.directory()).timers;
         let share = timers.get("checkpoints").copied().unwrap_or_default();
-        assert!(share > 1.0, "run.json tells {share} s of checkpoints");
+        assert!(share > 1.0, "run.json reports {share} s of checkpoints");
         share
     });
-    tried.figure(|seconds| format!("run.json tells {seconds} s of checkpoints"))
+    tried.figure(|seconds| format!("run.json reports {seconds} s of checkpoints"))
 }

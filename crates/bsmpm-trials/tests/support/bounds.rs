@@ -3,7 +3,7 @@
 use super::slips::{Edge, Ground};
 use std::f64::consts::PI;
 
-/// Edges of half a pipe; with 8 or 64 the bounds are others by .2 %.
+/// Edges of half a pipe; with 8 or 64 the bounds are others by 0.2 %.
 const EDGES: usize = 32;
 
 /// Force on a smooth pipe over c D, `depth` diameters from its centre to the surface of weightless clay, that is pulled

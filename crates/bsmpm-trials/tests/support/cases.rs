@@ -83,8 +83,8 @@ pub fn slope(beyond: f64) -> String {
     changed(&toe, "CREST", &format!("{:?}", 12.0 + beyond))
 }
 
-/// The same block on a floor that rubs, .3 mm above it at the start, so that it drops, slides and rocks.
-pub fn rubbed_block() -> String {
+/// The same block on a floor with friction, 0.3 mm above it at the start, so that it drops, slides and rocks.
+pub fn frictional_block() -> String {
     let text = changed(SLIDING_BLOCK, "bottom = \"roller\"", "bottom = { friction_coefficient = 0.4 }");
     let text = changed(&text, "box = { lower = [0.1, 0.0]", "box = { lower = [0.1, 0.0003]");
     let histories = ["contact", "gap", "slip-rate", "friction-power", "reaction"];
@@ -148,7 +148,7 @@ quantity = "reaction"
 face = "bottom"
 "#;
 
-/// So many steps of the column that it ends when it is told to.
+/// So many steps of the column that it ends when it is asked to.
 pub fn endless() -> String {
     changed(COLUMN, "steps = 5", "steps = 1000000")
 }

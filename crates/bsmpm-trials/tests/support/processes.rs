@@ -243,9 +243,10 @@ fn rank_of(mark: &str, rank: usize) -> Option<String> {
     let processes = marked(&mark_of(mark));
     let is_rank = |process: &&String| {
         let environment = std::fs::read(format!("/proc/{process}/environ")).unwrap_or_default();
-        let told = environment.split(|&byte| byte == 0).find_map(|entry| entry.strip_prefix(b"OMPI_COMM_WORLD_RANK="));
+        let reported =
+            environment.split(|&byte| byte == 0).find_map(|entry| entry.strip_prefix(b"OMPI_COMM_WORLD_RANK="));
         let name = std::fs::read_to_string(format!("/proc/{process}/comm")).unwrap_or_default();
-        name.trim() == "bsmpm-par" && told.unwrap_or(b"0") == rank.to_string().as_bytes()
+        name.trim() == "bsmpm-par" && reported.unwrap_or(b"0") == rank.to_string().as_bytes()
     };
     processes.iter().find(is_rank).cloned()
 }

@@ -84,14 +84,14 @@ fn a_body_of_revolution_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
     assert_eq!(units, ["kg", "N", "N", "kg m/s", "J"].map(Some));
     let of = |name: &str, t: f64| at(&table, name, t);
     assert!((of("mass", 0.06) / (1800.0 * PI) - 1.0).abs() < 1e-12);
-    // k0 leaves .8 % in so few cells.
+    // k0 leaves 0.8 % in so few cells.
     assert!((of("reaction-y", 0.0) / (1800.0 * PI * 9.81) - 1.0).abs() < 0.01, "{}", of("reaction-y", 0.0));
     assert!(of("rigid-force-y", 0.06) > 100.0 && of("rigid-work", 0.06) > 0.0);
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| of(name, 0.06).abs());
     assert!(closure < 1e-5 * external, "{closure:e} of {external:e}");
-    let told = manifest(&scratch.path("whole1"));
-    assert_eq!((told.case.geometry.as_str(), told.frame_units["volume"].as_str()), ("axisymmetric", "m3/rad"));
-    let whole = told.choices.iter().find(|choice| choice.key == "geometry").expect("what forces are of");
+    let reported = manifest(&scratch.path("whole1"));
+    assert_eq!((reported.case.geometry.as_str(), reported.frame_units["volume"].as_str()), ("axisymmetric", "m3/rad"));
+    let whole = reported.choices.iter().find(|choice| choice.key == "geometry").expect("what forces are of");
     assert!(whole.reason.contains("of the whole circle"));
 }
 
@@ -136,9 +136,9 @@ fn a_free_piston_falls_on_a_round_column_as_on_a_plane_one() {
     let (_, after) = elastic.split_once("[gravity]").unwrap();
     let (after, _) = after.split_once("[[history]]").unwrap();
     let piston = "[[rigid]]\nname = \"piston\"\npolygon = [[-1.5, 1.005], [1.5, 1.005], [1.5, 1.205], [-1.5, 1.205]]\n";
-    let told = ["force", "displacement", "velocity"]
+    let reported = ["force", "displacement", "velocity"]
         .map(|of| format!("[[history]]\nquantity = \"rigid-{of}\"\nrigid = \"piston\"\n"));
-    let of = |mass: &str| format!("{before}{piston}free = [\"y\"]\n{mass}\n[gravity]{after}{}", told.concat());
+    let of = |mass: &str| format!("{before}{piston}free = [\"y\"]\n{mass}\n[gravity]{after}{}", reported.concat());
     let scratch = Scratch::with_case(&of(&format!("density = {}", 500.0 / 0.45)));
     let plane = changed(&of("mass = 500"), "\"axisymmetric\"", "\"plane-strain\"");
     std::fs::write(scratch.path("plane.toml"), plane).unwrap();

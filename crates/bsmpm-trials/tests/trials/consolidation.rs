@@ -120,7 +120,7 @@ fn ranks_agree_and_a_run_in_two_parts_is_one() {
 }
 
 #[test]
-fn a_run_tells_how_its_water_was_solved_for_and_balanced() {
+fn a_run_reports_how_its_water_was_solved_for_and_balanced() {
     let scratch = Scratch::with_case(COLUMN);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "out", "--set", "output.residuals=true"]).expect(0);
     let found = manifest(&scratch.path("out"));
@@ -135,7 +135,7 @@ fn a_run_tells_how_its_water_was_solved_for_and_balanced() {
 
 /// Water pressed in from below lifts the column out of the grid that ends at its top.
 #[test]
-fn a_drain_that_leaves_the_grid_is_told_of() {
+fn a_drain_that_leaves_the_grid_is_reported() {
     let lifted =
         changed(COLUMN, "face = \"top\"", "surface = true\n[[drain]]\nface = \"bottom\"\npressure = \"200 Pa\"");
     let load = "[[traction]]\nfrom = [0, 1.0]\nto = [0.4, 1.0]\nstress = [0, \"-100 Pa\"]\n";
@@ -147,40 +147,43 @@ fn a_drain_that_leaves_the_grid_is_told_of() {
         scratch.mpirun(1, &arguments).expect(0);
         manifest(&scratch.path(name)).warnings
     };
-    let told = run("short", "title=short");
+    let reported = run("short", "title=short");
     assert!(
-        told.len() == 1 && told[0].starts_with("drain.0: at t = ") && told[0].contains("out of the grid"),
-        "{told:?}"
+        reported.len() == 1 && reported[0].starts_with("drain.0: at t = ") && reported[0].contains("out of the grid"),
+        "{reported:?}"
     );
     let further = run("further", "grid.upper=[0.4, 1.1]");
     assert!(further.is_empty(), "{further:?}");
 }
 
-/// A face does not go with the ground: it is told as soon as a part of a cell is between them, and when it is sealed;
-/// the surface of the body goes with it.
+/// A face does not go with the ground: it is reported as soon as a part of a cell is between them, and when it is
+/// sealed; the surface of the body goes with it.
 #[test]
-fn ground_that_leaves_a_drained_face_is_told_of() {
+fn ground_that_leaves_a_drained_face_is_reported() {
     let case = shipped("validation/large_consolidation.toml");
     let scratch = Scratch::new();
     let run = |name: &str, sets: &[&str]| {
         let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", *set]).collect();
         let case = case.to_str().expect("UTF-8");
         scratch.direct(&[&[case, "-q", "-o", name, "--set", "output={ }"][..], &sets].concat()).expect(0);
-        let told = manifest(&scratch.path(name)).warnings;
-        told.into_iter().filter(|warning| warning.starts_with("drain.0: at t = ")).collect::<Vec<_>>()
+        let reported = manifest(&scratch.path(name)).warnings;
+        reported.into_iter().filter(|warning| warning.starts_with("drain.0: at t = ")).collect::<Vec<_>>()
     };
     let face = "drain=[{ name = \"top\", face = \"top\" }]";
     let load = "traction.0.stress=[0, -1e5]";
     let short = "analysis={ type = \"consolidation\", end = \"5e5 s\", dt = \"500 s\", growth = 1.2 }";
-    let told = run("face", &[face, load, short]);
-    assert!(told.len() == 2 && told[0].contains("moved off") && told[1].contains("is sealed"), "{told:?}");
+    let reported = run("face", &[face, load, short]);
+    assert!(
+        reported.len() == 2 && reported[0].contains("moved off") && reported[1].contains("is sealed"),
+        "{reported:?}"
+    );
     let light = run("light", &[face, "traction.0.stress=[0, -8e3]", short]);
     assert!(light.is_empty(), "{light:?}");
     let surface = run("surface", &[load, short]);
     assert!(surface.is_empty(), "{surface:?}");
 }
 
-/// Under F-bar permeability and closure go by J-bar: by the points' own J pores at the drain close at T = .19.
+/// Under F-bar permeability and closure go by J-bar: by the points' own J pores at the drain close at T = 0.19.
 #[test]
 fn a_load_of_half_the_stiffness_leaves_pores_open_under_f_bar() {
     let scratch = Scratch::new();
@@ -258,11 +261,11 @@ fn nearly_incompressible_clay_as_undrained_soil_takes_a_third_of_the_iterations(
     keys.extend(["analysis.end=0.25 s", "output.times=[\"0.25 s\"]"].map(str::to_owned));
     let (undrained, few) = evaluations(&keys);
     assert!(few < many / 3.0, "{few} {many}");
-    assert!((undrained / load - 1.0).abs() < 0.12, "{undrained} {load}"); // coarse cells: 3 % with .25 m
+    assert!((undrained / load - 1.0).abs() < 0.12, "{undrained} {load}"); // coarse cells: 3 % with 0.25 m
 }
 
 /// A month of flood at a levee: what seeps out in the end against Casagrande (1937), who knows neither a fringe that
-/// conducts above the line nor the suction in it: +6.3 % in cells of 1 m, +5.3 of .25 m. On two ranks, and in parts,
+/// conducts above the line nor the suction in it: +6.3 % in cells of 1 m, +5.3 of 0.25 m. On two ranks, and in parts,
 /// the same.
 #[test]
 fn a_river_that_rises_seeps_through_a_levee() {
@@ -281,7 +284,7 @@ fn a_river_that_rises_seeps_through_a_levee() {
     let last = times.len() - 1;
     let rate = (seeped[last] - seeped[from]) / (times[last] - times[from]);
     let (k, height, slope) = (1e-5, 4.0, 0.5_f64.atan());
-    // From a point of the level that is .3 of the wetted bank before it.
+    // From a point of the level that is 0.3 of the wetted bank before it.
     let way = (24.0 - 8.0 + 0.3 * 8.0) / slope.cos();
     let seeps = way - (way.powi(2) - (height / slope.sin()).powi(2)).sqrt();
     let expected = k * seeps * slope.sin() * slope.tan();
@@ -334,13 +337,17 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
     let sudden = changed(&case, "stage = \"end\"", "stage = \"end\"\ndrainage = \"undrained\"");
     let rest = changed(&case, "factor = 1.2", "factor = 1.0001");
     let scratch = Scratch::new();
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     let runs = [("one", 1), ("two", 2), ("still", 1), ("given", 1), ("rest", 1), ("sudden", 2)];
     for ((name, ranks), case) in runs.into_iter().zip([&case, &case, &still, &given, &rest, &sudden]) {
         scratch.write("case.toml", case);
-        told.push(scratch.mpirun(ranks, &["case.toml", "-o", name]).expect(0).stderr);
+        reported.push(scratch.mpirun(ranks, &["case.toml", "-o", name]).expect(0).stderr);
     }
-    assert!(told[1].contains("pore pressures stay") && !told[3].contains("pore pressures stay"), "{}", told[0]);
+    assert!(
+        reported[1].contains("pore pressures stay") && !reported[3].contains("pore pressures stay"),
+        "{}",
+        reported[0]
+    );
     let tables = runs.map(|(name, _)| history(&scratch.path(name)));
     let moved = [0, 1, 2, 3, 4].map(|k| *tables[k].get("max-displacement").unwrap().last().unwrap());
     println!("moved {moved:?} m");
@@ -357,7 +364,7 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
     );
     // Without drainage nothing leaves, and the pressures follow the strain.
     let sudden = |name: &str| tables[5].get(name).unwrap().last().copied().unwrap();
-    assert!(!told[5].contains("pore pressures stay"), "{}", told[5]);
+    assert!(!reported[5].contains("pore pressures stay"), "{}", reported[5]);
     assert_eq!(sudden("water-outflow"), at(&tables[5], "water-outflow", until));
     assert!((sudden("excess-pressure") / left - 1.0).abs() > 1e-2, "{} {left}", sudden("excess-pressure"));
     scratch.write("case.toml", &case);

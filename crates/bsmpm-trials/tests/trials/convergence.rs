@@ -1,4 +1,4 @@
-//! What is accepted as converged, what is not, and what is told of it.
+//! What is accepted as converged, what is not, and what is reported of it.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
@@ -104,7 +104,7 @@ fn value(scratch: &Scratch, column: &str) -> f64 {
 }
 
 /// The steps in which the whole wedge yields begin so nearly balanced that no later energy is small beside their first
-/// one: they ended with 80 at .84 and .10 of the wall's way although the forces balanced a hundred times better than
+/// one: they ended with 80 at 0.84 and 0.10 of the wall's way although the forces balanced a hundred times better than
 /// asked.
 #[test]
 fn a_wall_that_moves_away_has_rankines_active_thrust() {
@@ -117,7 +117,7 @@ fn a_wall_that_moves_away_has_rankines_active_thrust() {
         let found = value(&scratch, "reaction-x");
         assert!((found / thrust - 1.0).abs() < 0.02, "{cohesion}: {found} {thrust}");
         let summary = manifest(&scratch.path("case.out")).summary;
-        // What settled is told, and is not what steps are made of.
+        // What settled is reported, and is not what steps are made of.
         assert!(summary.settled_steps * 2 < summary.steps, "{summary:?}");
     }
 }

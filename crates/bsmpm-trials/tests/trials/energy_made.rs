@@ -39,5 +39,5 @@ fn the_shipped_collapse_does_not() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap());
     scratch.direct(&["case.toml", "-q", "-o", "out", "--max-steps", "400"]).expect(75);
     let growth = manifest(&scratch.path("out")).indicators["energy-growth"].clone();
-    assert!(growth.value <= 0.005 && !growth.unusual, "{growth:?}"); // measured .0013, in the first steps
+    assert!(growth.value <= 0.005 && !growth.unusual, "{growth:?}"); // measured 0.0013, in the first steps
 }

@@ -3,7 +3,7 @@
 use super::factor_of_safety::{estimate, of_stage};
 use serde_json::Value;
 
-/// Strong soil on rock that is inclined by tan(theta) = .5, with friction .75: gravity is inclined, or the rock.
+/// Strong soil on rock that is inclined by tan(theta) = 0.5, with friction 0.75: gravity is inclined, or the rock.
 const BLOCK: &str = r#"
     geometry = "plane-strain"
     analysis = { type = "quasi-static", steps = 5 }
@@ -125,7 +125,8 @@ fn a_layer_of_sensitive_clay_has_the_factor_of_its_peak_and_exchanged_clay_that_
     assert!((clay / strength - 1.0).abs() < 0.03, "{clay} {strength}");
 }
 
-/// 1.584 and 1.584 as the toe is held; .969 as it is not. A wall that goes 10 mm away in a stage and is to go on leaves
+/// 1.584 and 1.584 as the toe is held; 0.969 as it is not. A wall that goes 10 mm away in a stage and is to go on
+/// leaves
 /// 1.582, where it stops for good, too, a strip that has gone 10 mm in 1.588; there is more in what moves than in what
 /// is held.
 #[test]
@@ -157,8 +158,8 @@ fn a_slope_held_by_a_wall_has_the_factor_of_one_held_by_a_face() {
     assert!(moved["notes"].to_string().contains("are held where they are then"), "{moved}");
 }
 
-/// A body that no material comes near is none: .970513 and .970514. With bodies equilibrium is sought in two passes, so
-/// that displacements differ within the tolerances, and estimates have six digits.
+/// A body that no material comes near is none: 0.970513 and 0.970514. With bodies equilibrium is sought in two passes,
+/// so that displacements differ within the tolerances, and estimates have six digits.
 #[test]
 fn a_body_far_away_does_not_change_the_factor() {
     let of = |set: &[&str]| {

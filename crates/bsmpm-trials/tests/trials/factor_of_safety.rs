@@ -104,7 +104,7 @@ fn the_factor_of_a_slope_depends_neither_on_the_background_nor_on_the_number_of_
 }
 
 /// With E = 10 MPa the displacement of 20 times the elastic one is a third of the slope's height, and geometry that
-/// flattens under it lowers the factor: with cells of 1.25 m .981 without stiffer trials, .994 with them, .993 with
+/// flattens under it lowers the factor: with cells of 1.25 m 0.981 without stiffer trials, 0.994 with them, 0.993 with
 /// 1,000 MPa.
 #[test]
 fn the_factor_of_acads_1a_does_not_depend_on_the_stiffness() {
@@ -121,7 +121,7 @@ fn the_factor_of_acads_1a_does_not_depend_on_the_stiffness() {
 }
 
 /// The reference is elastic: with ten times the strength for it the fill had a friction angle of 80.2 degrees without
-/// dilation, with which not every embankment finds equilibrium. The program found 1.472 with a band of .02, 1.468 at
+/// dilation, with which not every embankment finds equilibrium. The program found 1.472 with a band of 0.02, 1.468 at
 /// `standard`.
 #[test]
 fn an_embankment_on_clay_whose_weight_acts_from_the_start_has_a_factor() {
@@ -157,7 +157,7 @@ fn a_slope_that_is_built_and_then_weakened_has_the_same_factor() {
 }
 
 /// The first pit of `cases/excavation.toml` is a vertical cut, 4 m high, which stands up to gamma H/c = 3.7603 to
-/// 3.7859 (Pastor et al., 2000). In cells of 1 m its factor is 2.99, of .5 m 2.83, and 2.68 where these lead to; that
+/// 3.7859 (Pastor et al., 2000). In cells of 1 m its factor is 2.99, of 0.5 m 2.83, and 2.68 where these lead to; that
 /// of the second one is 1.88, where blocks allow 1.884.
 #[test]
 fn a_pit_has_the_factor_of_a_vertical_cut_and_then_no_more_than_blocks_allow() {
@@ -182,7 +182,7 @@ fn a_pit_has_the_factor_of_a_vertical_cut_and_then_no_more_than_blocks_allow() {
 }
 
 /// `cases/embankment.toml` at its end. With a fill that has no friction the circles are an upper bound: 1.507, where
-/// the program finds 1.502; it finds 1.497 with the case's own, in cells of 1 m and of .5 m.
+/// the program finds 1.502; it finds 1.497 with the case's own, in cells of 1 m and of 0.5 m.
 #[test]
 fn the_embankment_of_the_scenes_has_the_factor_of_bishops_circles() {
     let fill = [19e3, 5e3, 30.0];
@@ -216,7 +216,7 @@ fn turns_between_ends(length: f64, centre: [f64; 2], radius: f64) -> f64 {
     held / weight
 }
 
-/// Half of 10 m between rough ends: 1.404 with cells of 1 m, 1.398 with .5 m; the plane slope 1.110 and 1.111. The
+/// Half of 10 m between rough ends: 1.404 with cells of 1 m, 1.398 with 0.5 m; the plane slope 1.110 and 1.111. The
 /// circles are those with the least bounds, 1.160 and 1.578.
 #[test]
 fn rough_ends_hold_a_slope_up_to_what_a_cylinder_between_them_allows() {
@@ -248,7 +248,7 @@ fn a_thick_cylinder_has_the_factor_of_its_limit_pressure() {
     let (found, _) = of_stage(range, "validation/thick_cylinder.toml", &set, 2, dir.path());
     let [stable, failed] = ["last_stable", "first_failed"].map(|key| found["factor_of_safety"][key].as_f64().unwrap());
     let exact = 2.0 * std::f64::consts::LN_2;
-    // 1.386 to 1.406 for 1.3863: the band is .0195 wide, and within its width of the limit.
+    // 1.386 to 1.406 for 1.3863: the band is 0.0195 wide, and within its width of the limit.
     assert!(failed - stable <= 0.0201 && (0.5 * (stable + failed) - exact).abs() <= 0.02, "{stable} {failed}");
 }
 

@@ -71,7 +71,7 @@ fn ground_beside_a_free_field_is_the_same_on_any_number_of_ranks_and_over_restar
     }
     agree(&scratch.path("whole3"), &scratch.path("whole1"));
     let found = history(&scratch.path("whole1"));
-    // Earth pressure at rest of both layers, k0 = .5.
+    // Earth pressure at rest of both layers, k0 = 0.5.
     let [upper, lower] = [1800.0, 2000.0].map(|density| 9.81 * density);
     let at_rest = 0.5 * (0.5 * upper * 4.0 + upper * 4.0 + 0.5 * lower * 4.0);
     assert!((at(&found, "reaction-x", 0.0) / at_rest - 1.0).abs() < 0.1, "{}", at(&found, "reaction-x", 0.0));
@@ -126,7 +126,7 @@ at = [6, 0.5]
 quantity = "energy"
 "#;
 
-/// What sides and base hold is found anew, with the lift's weight, and the columns beside go on: nothing drifts once
+/// What sides and base hold is found again, with the lift's weight, and the columns beside go on: nothing drifts once
 /// its waves have left. The same on any ranks and over restarts, one of them right after the stage. A base that held
 /// the building may absorb after it.
 #[test]
@@ -151,10 +151,10 @@ fn ground_beside_a_free_field_is_built_and_then_shakes() {
         println!("{name}: {before:e} and {after:e} m");
         assert!(before < -1e-4 && (after - before).abs() < 1e-7, "{before:e} {after:e}");
     }
-    for (wrong, told) in [
+    for (wrong, reported) in [
         ("stage.0.at=0.15", "let [shaking] begin later"),
         ("body.1.polygon=[[0.5, 4], [9, 4], [8, 5], [4, 5]]", "the cells at \"left\" are the free field"),
     ] {
-        scratch.mpirun(1, &["case.toml", "--check", "--set", wrong]).expect(65).says_once(told);
+        scratch.mpirun(1, &["case.toml", "--check", "--set", wrong]).expect(65).says_once(reported);
     }
 }

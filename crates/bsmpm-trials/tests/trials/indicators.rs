@@ -91,7 +91,7 @@ fn a_run_that_goes_on_has_those_of_one_that_was_not_stopped() {
 }
 
 #[test]
-fn one_point_a_cell_is_told_at_the_end() {
+fn one_point_a_cell_is_reported_at_the_end() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     // Not longer: what is so unstable soon follows the last digits, which differ from machine to machine.
     let coarse = ["case.toml", "--max-steps", "10", "--set", "body.0.points_per_cell=1"];

@@ -98,7 +98,7 @@ fn terzaghi(first: impl Fn(f64) -> f64, t: f64) -> f64 {
     (0..200).map(wave).map(|k| first(k) * (-k * k * t).exp()).sum()
 }
 
-/// What a run of a case is told before its first step.
+/// What a run of a case warns of before its first step.
 fn warnings(case: &str) -> Vec<String> {
     let scratch = Scratch::with_case(case);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "out", "--max-steps", "1"]).expect(75);
@@ -111,10 +111,10 @@ fn warnings(case: &str) -> Vec<String> {
 fn a_lift_loads_the_water_below_and_both_drain_through_its_top() {
     let scratch = Scratch::with_case(LIFTED);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
-    let told = manifest(&scratch.path("whole"));
-    assert!(told.warnings.iter().all(|warning| !warning.contains("stage.0")), "{:?}", told.warnings);
+    let reported = manifest(&scratch.path("whole"));
+    assert!(reported.warnings.iter().all(|warning| !warning.contains("stage.0")), "{:?}", reported.warnings);
     assert_eq!(
-        (&told.stages[0].applied[..], &told.stages[0].released[..]),
+        (&reported.stages[0].applied[..], &reported.stages[0].released[..]),
         (&["crest".into()][..], &["ground".into()][..])
     );
     let found = history(&scratch.path("whole"));
@@ -146,7 +146,10 @@ fn a_lift_loads_the_water_below_and_both_drain_through_its_top() {
     println!("balance {balance:e}");
     assert!(balance < 1e-7, "{balance:e}");
     let covered = warnings(&changed(LIFTED, "deactivate = [\"ground\"]\n", ""));
-    assert!(covered.iter().any(|told| told.contains("drain.0 goes on draining under what is placed")), "{covered:?}");
+    assert!(
+        covered.iter().any(|warning| warning.contains("drain.0 goes on draining under what is placed")),
+        "{covered:?}"
+    );
     // Before, at and after the stage.
     repeats(&scratch, &["base", "within", "top-y", "crest"], &["49", "50", "51", "60"]);
 }
@@ -180,10 +183,10 @@ fn clay_between_sand_and_fill_in_which_no_water_flows_drains_to_both() {
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "out"]).expect(0);
     let warned = manifest(&scratch.path("out")).warnings;
-    assert!(warned.iter().all(|told| !told.contains("drain") && !told.contains("stage.0")), "{warned:?}");
+    assert!(warned.iter().all(|warning| !warning.contains("drain") && !warning.contains("stage.0")), "{warned:?}");
     let [a, b, c] = ["[[drain]]", "[[stage]]", "[[history]]"].map(|table| case.find(table).expect("a table"));
     let closed = warnings(&(case[..a].to_owned() + &case[b..c]));
-    assert!(closed.iter().any(|told| told.contains("material.sand: drainage = \"hydrostatic\"")), "{closed:?}");
+    assert!(closed.iter().any(|warning| warning.contains("material.sand: drainage = \"hydrostatic\"")), "{closed:?}");
     let found = history(&scratch.path("out"));
     let of = |name: &str, t: f64| at(&found, name, t);
     let weight = 20e3 * LIFT;
@@ -269,10 +272,13 @@ fn a_lift_comes_with_the_suction_of_its_time() {
     );
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
-    let told = manifest(&scratch.path("whole")).warnings;
-    assert!(told.iter().any(|told| told.contains("stage.0.add: there is no drain on body.1")), "{told:?}");
+    let reported = manifest(&scratch.path("whole")).warnings;
+    assert!(
+        reported.iter().any(|warning| warning.contains("stage.0.add: there is no drain on body.1")),
+        "{reported:?}"
+    );
     let found = history(&scratch.path("whole"));
-    // Under its own weight what pores hold bears little: p is near that of still water, gamma_w (.45 - .875) m.
+    // Under its own weight what pores hold bears little: p is near that of still water, gamma_w (0.45 - 0.875) m.
     let (suction, still) = (at(&found, "within", 0.255), 9810.0 * (0.45 - 0.875));
     println!("{suction} Pa, of still water {still}");
     assert!((suction / still - 1.0).abs() < 0.01, "{suction}, {still}");

@@ -105,7 +105,7 @@ fn a_limit_load_is_the_same_on_any_number_of_ranks_and_over_restarts() {
 }
 
 #[test]
-fn a_load_that_still_grows_is_told() {
+fn a_load_that_still_grows_is_reported() {
     let scratch = Scratch::new();
     let case = shipped("limit_load/strip_on_clay.toml");
     let short = "footing.displacement=[0.0, -0.01]";

@@ -54,7 +54,7 @@ fn a_second_run_is_refused_with_73_and_the_first_one_goes_on_as_it_was() {
     }
 }
 
-/// Twenty at once: one of them runs until it is told to stop, and the others are refused.
+/// Twenty at once: one of them runs until it is asked to stop, and the others are refused.
 fn one_of_twenty(scratch: &Scratch) -> Output {
     let job = || scratch.job(None, &["case.toml", "--force"]).within(HANGS);
     let mut running = vec![job().start()];
@@ -91,7 +91,7 @@ fn of_twenty_that_find_a_dead_runs_lock_one_takes_it_over() {
 }
 
 #[test]
-fn a_dead_runs_lock_on_this_host_is_taken_over_and_that_is_told() {
+fn a_dead_runs_lock_on_this_host_is_taken_over_and_that_is_reported() {
     let scratch = Scratch::with_case(&endless());
     for ranks in [None, Some(2)] {
         killed(&scratch, ranks);

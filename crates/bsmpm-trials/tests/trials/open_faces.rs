@@ -137,9 +137,11 @@ fn what_leaves_is_counted_and_the_rest_goes_on() {
     let found = history(&scratch.path("whole1"));
     let (mass, left) = (at(&found, "mass", 0.5), at(&found, "outflow", 0.5));
     assert!(left > 0.1 * mass && (mass + left - 320.0).abs() < 1e-9, "{mass} kg stay, {left} leave");
-    let told = manifest(&scratch.path("whole1"));
-    assert_eq!(told.outflow.map(|outflow| outflow.mass), Some(left));
-    assert!(told.warnings.iter().any(|warning| warning.contains("history lost: the point that it followed has left")));
+    let reported = manifest(&scratch.path("whole1"));
+    assert_eq!(reported.outflow.map(|outflow| outflow.mass), Some(left));
+    assert!(
+        reported.warnings.iter().any(|warning| warning.contains("history lost: the point that it followed has left"))
+    );
     assert_eq!(at(&found, "lost-x", 0.5), 0.0);
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 0.5).abs());
     assert!(closure < 1e-4 * external, "{closure:e} of {external:e}");

@@ -48,7 +48,7 @@ fn history_has_names_units_and_one_row_a_step_from_the_start_on() {
 }
 
 #[test]
-fn steps_tells_how_hard_each_step_was() {
+fn steps_reports_how_hard_each_step_was() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let directory = scratch.path("case.out");

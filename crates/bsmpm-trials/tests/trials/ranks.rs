@@ -1,6 +1,6 @@
 //! The number of ranks changes nothing but the time that a run takes.
 
-use crate::support::cases::{SLIDING_BLOCK, changed, pressed_block, rubbed_block};
+use crate::support::cases::{SLIDING_BLOCK, changed, frictional_block, pressed_block};
 use crate::support::results::{all_frames, differences, history, ids, last_frame, manifest, steps};
 use crate::support::{Scratch, example, processes, shipped};
 use std::collections::BTreeSet;
@@ -36,8 +36,8 @@ fn an_elastic_block_that_slides_from_slab_to_slab_is_the_same_on_1_2_3_and_4_ran
 
 /// Nodes on a face stick, slip and lift as the whole of them says, also where two ranks share them.
 #[test]
-fn a_block_that_rubs_is_the_same_on_1_2_3_and_4_ranks() {
-    let scratch = Scratch::with_case(&rubbed_block());
+fn a_block_with_friction_is_the_same_on_1_2_3_and_4_ranks() {
+    let scratch = Scratch::with_case(&frictional_block());
     agree(&scratch, "case.toml", &[], &[1, 2, 3, 4], 1e-8);
     let histories = [1, 4].map(|count| history(&scratch.path(&format!("{count}.out"))));
     for column in ["contact-closed", "contact-sliding", "gap-largest", "slip-rate", "friction-power", "reaction-x"] {
@@ -45,10 +45,10 @@ fn a_block_that_rubs_is_the_same_on_1_2_3_and_4_ranks() {
         let largest = one.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         assert!(largest > 0.0 && one.iter().zip(four).all(|(a, b)| (a - b).abs() <= 1e-6 * largest), "{column}");
     }
-    let [closed, pushed, rubbed] =
+    let [closed, pushed, friction_work] =
         ["contact-closed", "reaction-y", "reaction-x"].map(|column| histories[0].get(column).unwrap());
     assert!(closed[1..].contains(&0.0) && closed.contains(&1.0));
-    assert!(pushed.iter().zip(rubbed).all(|(push, rub)| *push >= 0.0 && rub.abs() <= 0.4 * push * (1.0 + 1e-9)));
+    assert!(pushed.iter().zip(friction_work).all(|(push, rub)| *push >= 0.0 && rub.abs() <= 0.4 * push * (1.0 + 1e-9)));
 }
 
 /// Zhao's F-bar gives the points a state of its own, the consistent one exchanges functions of the degree below.
@@ -204,15 +204,15 @@ fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_an
 /// A square that is nearly incompressible, loaded unevenly, is solved by a factor of double precision, others by one of
 /// single.
 #[test]
-fn a_factor_of_single_precision_that_is_too_coarse_is_made_anew_on_1_2_and_3_ranks() {
-    let told = |nu: &str, ranks: usize| {
+fn a_factor_of_single_precision_that_is_too_coarse_is_made_again_on_1_2_and_3_ranks() {
+    let reports = |nu: &str, ranks: usize| {
         let mut launcher = Command::new("mpirun");
         launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string()]).arg(example("solvers"));
         launcher.args(["direct", nu, "20"]);
         processes::run(launcher, &[], true, Duration::from_secs(120)).expect(0).stdout
     };
     for ranks in [1, 2, 3] {
-        let (stiff, usual) = (told("0.499999", ranks), told("0.3", ranks));
+        let (stiff, usual) = (reports("0.499999", ranks), reports("0.3", ranks));
         assert!(stiff.contains("1 factorisations more") && usual.contains("0 factorisations more"), "{stiff} {usual}");
     }
 }
@@ -353,6 +353,6 @@ fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks_whose_slabs_follow_it() {
         *history.get("runout").unwrap().last().unwrap()
     });
     assert!(runouts[0] > 0.36, "{runouts:?}");
-    // Measured 3e-14 m at .3 s and 5e-12 m at .607 s.
+    // Measured 3e-14 m at 0.3 s and 5e-12 m at 0.607 s.
     assert!(runouts.iter().all(|runout| (runout - runouts[0]).abs() < 1e-9), "{runouts:?}");
 }

@@ -17,7 +17,7 @@ fn run(case: &str, set: &[&str]) -> bsmpm_io::table::Columns {
 }
 
 /// Janssen (1895), after each lift, with K of grain that stays elastic and of grain that yields at the walls: there
-/// Mohr's circle of radius p sin(phi) meets the wall's friction, tan(delta) = .4. Cells of .5 m: 2.2 and 4.2 %.
+/// Mohr's circle of radius p sin(phi) meets the wall's friction, tan(delta) = 0.4. Cells of 0.5 m: 2.2 and 4.2 %.
 #[test]
 fn what_presses_on_the_bottom_of_a_silo_is_janssens() {
     let (friction, grain) = (0.4_f64, 0.5_f64);
@@ -28,8 +28,8 @@ fn what_presses_on_the_bottom_of_a_silo_is_janssens() {
         let found = run("silo.toml", &["grid.cell=0.5", &poisson, "check=[]"]);
         for lifts in 1..=8 {
             let (t, depth) = (f64::from(lifts), 2.0 * f64::from(lifts));
-            let rubs = friction * ratio / 2.0;
-            let janssen = 15e3 / rubs * (1.0 - (-rubs * depth).exp());
+            let has_friction = friction * ratio / 2.0;
+            let janssen = 15e3 / has_friction * (1.0 - (-has_friction * depth).exp());
             let pressure = at(&found, "bottom-y", t) / 2.0;
             assert!((pressure / janssen - 1.0).abs() < slack, "{poisson} {depth} m: {pressure}, {janssen}");
             let all = at(&found, "bottom-y", t) + at(&found, "wall-y", t);

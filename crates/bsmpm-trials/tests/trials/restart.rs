@@ -1,6 +1,6 @@
 //! Going on from checkpoints: on as many ranks to the bit, on others within tolerances, and never with another case.
 
-use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed, pressed_block, rubbed_block};
+use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed, frictional_block, pressed_block};
 use crate::support::results::{all_frames, differences, history, last_frame, manifest, steps};
 use crate::support::{Scratch, entries};
 use bsmpm_io::manifest::Status;
@@ -9,7 +9,7 @@ use std::path::Path;
 /// Restart files after every fifth step, all of them kept.
 const OFTEN: &str = "output.checkpoint={every_steps=5,keep=100}";
 
-/// All rows of a run's tables but the seconds and messages that they tell (who goes on numbers the unknowns anew), and
+/// All rows of a run's tables but the seconds and messages that they tell (who goes on numbers the unknowns again), and
 /// the bytes of its last frame.
 fn results(directory: &Path) -> (String, String, Vec<u8>) {
     let text = |name: &str| std::fs::read_to_string(directory.join(name)).unwrap();
@@ -47,8 +47,8 @@ fn a_run_that_was_stopped_goes_on_to_the_bit() {
 /// What sticks, slips and lifts follows from the points and the last displacement: there is nothing else to keep. Of a
 /// pressure its direction and how that changes are kept.
 #[test]
-fn a_block_that_rubs_goes_on_to_the_bit_and_so_does_one_that_is_pressed() {
-    [rubbed_block(), pressed_block()].iter().for_each(|case| goes_on_to_the_bit(case));
+fn a_block_with_friction_goes_on_to_the_bit_and_so_does_one_that_is_pressed() {
+    [frictional_block(), pressed_block()].iter().for_each(|case| goes_on_to_the_bit(case));
 }
 
 fn goes_on_to_the_bit(case: &str) {
@@ -235,7 +235,7 @@ fn lines_with_one_checksum(key: &str) -> [String; 2] {
     })
 }
 
-/// Writes `by` in place of `part` into a checkpoint, and its record anew.
+/// Writes `by` in place of `part` into a checkpoint, and its record again.
 fn forge(file: &Path, part: &str, by: &str) {
     assert_eq!(part.len(), by.len());
     let mut bytes = std::fs::read(file).unwrap();
@@ -329,7 +329,7 @@ fn materials_in_another_order_are_another_case() {
 }
 
 #[test]
-fn a_run_that_has_ended_is_never_begun_anew_by_itself() {
+fn a_run_that_has_ended_is_never_begun_again_by_itself() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let before = std::fs::read(scratch.path("case.out/history.csv")).unwrap();
@@ -376,7 +376,7 @@ fn a_branch_in_another_directory_has_a_checkpoint_of_its_own_at_once() {
 }
 
 #[test]
-fn a_failure_that_was_mended_is_no_longer_told() {
+fn a_failure_that_was_mended_is_no_longer_reported() {
     let scratch = Scratch::with_case(COLUMN);
     let run = ["case.toml", "-q", "--set", OFTEN];
     scratch.mpirun(2, &[&run[..], &["--max-steps", "2"]].concat()).expect(75);

@@ -1,5 +1,5 @@
-//! Rigid bodies: the same on any number of ranks and over restarts, what is told of them, and the thrust of sand on a
-//! wall.
+//! Rigid bodies: the same on any number of ranks and over restarts, what is reported of them, and the thrust of sand on
+//! a wall.
 
 use crate::support::cases::changed;
 use crate::support::results::{at, history, manifest};
@@ -100,7 +100,7 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
         assert!((a - b).abs() < 1e-8 * a.abs(), "{name}: {a} and {b}");
     }
     assert!(at(&one, "block-y", 0.12) > 0.0 && at(&one, "roller-y", 0.06) > 1e3 && at(&one, "rigid-slip", 0.12) > 0.0);
-    // Where it touches it goes back, .05 - 10 degrees of .5 m: friction drives it on, and turns against it.
+    // Where it touches it goes back, 0.05 - 10 degrees of 0.5 m: friction drives it on, and turns against it.
     let [x, y, moment] = ["roller-x", "roller-y", "rigid-moment"].map(|name| at(&one, name, 0.12));
     assert!(x > 0.25 * y && moment > 0.25 * 0.5 * y, "{x} {y} {moment}");
     assert!((at(&one, "rigid-displacement-x", 0.12) - 0.05).abs() < 1e-12);
@@ -112,7 +112,7 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
 }
 
 #[test]
-fn what_is_doubtful_of_rigid_bodies_is_told_and_what_nothing_holds_ends_the_run() {
+fn what_is_doubtful_of_rigid_bodies_is_reported_and_what_nothing_holds_ends_the_run() {
     let met = changed(CASE, "centre = [2.8, 1.5], radius = 0.5", "centre = [1.3, 1.9], radius = 0.5");
     let met = changed(&met, "[0.06, 0.0, -0.03]", "[0.06, -0.1, -0.3]");
     let scratch = Scratch::with_case(&changed(&met, "dt = 0.003", "dt = 0.03"));
@@ -201,7 +201,7 @@ fn a_rigid_wall_that_goes_away_from_sand_has_rankines_and_coulombs_active_thrust
     assert!((smooth[0] / active(0.0) - 1.0).abs() < 0.03, "{smooth:?}");
     // 7e-13 seen.
     assert!((two[0] / smooth[0] - 1.0).abs() < 1e-6, "{two:?} on two ranks, {smooth:?} on one");
-    // From rest; -2.2 %, and all of it slides: friction is .3 to rounding.
+    // From rest; -2.2 %, and all of it slides: friction is 0.3 to rounding.
     let rough = thrust(&changed(WALL, "friction_coefficient = 0.0", "friction_coefficient = 0.3"), 1, "rigid-force");
     assert!((rough[0] / active(0.3) - 1.0).abs() < 0.03, "{rough:?}");
     assert!((rough[1] / rough[0] / 0.3 - 1.0).abs() < 1e-9, "{rough:?}");
@@ -341,7 +341,7 @@ fn a_rigid_body_that_a_stage_places_falls_from_then_on() {
     }
 }
 
-/// A rough punch in plastic failure, with and without a C0 line at its corner: in these steps it had stopped at .44 of
+/// A rough punch in plastic failure, with and without a C0 line at its corner: in these steps it had stopped at 0.44 of
 /// the way without, as nothing led to an equilibrium, and had come to 6.09 c with ten times as many.
 #[test]
 fn a_rough_punch_on_clay_goes_the_whole_way() {
@@ -356,7 +356,7 @@ fn a_rough_punch_on_clay_goes_the_whole_way() {
     }
 }
 
-/// Soil with a notch, to whose sides its points come no nearer than .7 of their spacing.
+/// Soil with a notch, to whose sides its points come no nearer than 0.7 of their spacing.
 const NOTCH: &str = r#"
 geometry = "plane-strain"
 [analysis]

@@ -41,7 +41,7 @@ fn the_sliding_block_has_the_same_bits_in_a_grid_ten_times_as_long_and_as_high_o
 /// steps. After 24 steps two empty cells are left to the wall of the short one: the block touches no function that a
 /// wall changes.
 #[test]
-fn a_room_that_is_made_anew_has_the_bits_of_a_grid_that_is_held_whole() {
+fn a_room_that_is_made_again_has_the_bits_of_a_grid_that_is_held_whole() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     agree(&scratch, &[1, 3], &["[0.7,0.3]", "[1.0,0.3]", "[3.0,0.9]"], &WHOLE, 24);
 }
@@ -64,7 +64,7 @@ fn the_footing_has_the_same_bits_in_a_grid_ten_times_as_high() {
     agree(&scratch, &[1], &["[5.0,7.0]", "[5.0,70.0]"], &[], 4);
 }
 
-/// The newest checkpoint of a run: its bytes, and the room that its state tells, a text in one piece.
+/// The newest checkpoint of a run: its bytes, and the room that its state reports, a text in one piece.
 fn newest(directory: &Path) -> (usize, String) {
     let files = std::fs::read_dir(directory.join(bsmpm_io::checkpoint::FOLDER)).unwrap();
     let files = files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|end| end == "h5"));

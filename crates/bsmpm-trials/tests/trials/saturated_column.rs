@@ -5,7 +5,7 @@ use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{at, history};
 
-/// A column 1 m high of M = 1 MPa and 1000 kg/m3 under 10 Pa at once: H sqrt(rho/M) = .031623 s, gamma_w H/(k sqrt(M
+/// A column 1 m high of M = 1 MPa and 1000 kg/m3 under 10 Pa at once: H sqrt(rho/M) = 0.031623 s, gamma_w H/(k sqrt(M
 /// rho)) = 1.
 const COLUMN: &str = r#"
 geometry = "plane-strain"

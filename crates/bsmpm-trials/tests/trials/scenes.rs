@@ -133,7 +133,7 @@ fn the_footings_histories_are_true() {
     );
     assert!(last("right-x") < 0.0, "the face pushes to the left");
     assert!(last("footing-force") > 0.0 && last("slip") < 1e-2);
-    let initial = manifest.initial.expect("the stress at the start is told");
+    let initial = manifest.initial.expect("the stress at the start is reported");
     assert!(initial.unbalance < 1e-8 && initial.yielding == 0, "{initial:?}");
     assert!(manifest.summary.largest_slip.is_some_and(|slip| slip < 1e-2));
     assert!(manifest.summary.largest_accumulated_slip.is_some_and(|slip| slip > 1e-6 && slip < 4e-3));
@@ -152,7 +152,7 @@ fn nothing_moves_under_its_own_stress_at_the_start() {
     assert!(moved.iter().all(|&moved| moved < 1e-6), "{moved:?}"); // the layer settles by 2 cm under gravity
 }
 
-/// A weightless elastic block of 7 x 7 cells of .1 m between a roller and a face that moves; `lower` is the grid's
+/// A weightless elastic block of 7 x 7 cells of 0.1 m between a roller and a face that moves; `lower` is the grid's
 /// left.
 fn platen(lower: f64, upper: f64) -> String {
     format!(
@@ -256,7 +256,7 @@ fn a_weaker_slope_moves_more() {
         scratch.mpirun(2, &[&arguments[..], &paper[..]].concat()).expect(0);
         *history(&scratch.path("slope.out")).get("E_delta_over_gamma_H2").unwrap().last().unwrap()
     });
-    // method.md 7: .3874 and .589 with another quasi-Newton method, and without extended splines. With them .571, as
+    // method.md 7: 0.3874 and 0.589 with another quasi-Newton method, and without extended splines. With them 0.571, as
     // the surface's cells are a little stiffer.
     assert!((moved[0] - 0.387).abs() < 0.002 && (moved[1] - 0.571).abs() < 0.01, "{moved:?}");
 }
@@ -271,7 +271,7 @@ fn a_load_that_starts_away_from_every_body_is_an_error_of_the_case() {
 }
 
 #[test]
-fn a_load_whose_points_leave_the_grid_is_told_and_ends_the_run() {
+fn a_load_whose_points_leave_the_grid_is_reported_and_ends_the_run() {
     // The block's top is drawn through the top of the grid half a cell above; its points are still below then.
     let case = platen(0.0, 0.7)
         .replace("upper = [0.7, 0.7]\ncell", "upper = [0.7, 0.8]\ncell")
@@ -298,16 +298,19 @@ fn a_start_that_is_out_of_balance_or_beyond_yield_is_warned_of() {
         scratch.mpirun(2, &["case.toml", "-q", "--max-steps", "1"]);
         manifest(&scratch.path("case.out")).warnings
     };
-    let told = |warnings: &[String], text: &str| warnings.iter().any(|warning| warning.contains(text));
+    let reports = |warnings: &[String], text: &str| warnings.iter().any(|warning| warning.contains(text));
     let far = warnings(&changed(&case, "ramp   = 0.5", "ramp = 0.0"));
-    assert!(told(&far, "% of the largest force unbalanced") && told(&far, "beyond yield at"), "{far:?}");
-    assert!(told(&far, "traction.0: acts in full from time 0"), "{far:?}");
+    assert!(reports(&far, "% of the largest force unbalanced") && reports(&far, "beyond yield at"), "{far:?}");
+    assert!(reports(&far, "traction.0: acts in full from time 0"), "{far:?}");
     let near = warnings(LOADED);
-    assert!(!told(&near, "unbalanced") && !told(&near, "beyond yield") && !told(&near, "from time 0"), "{near:?}");
+    assert!(
+        !reports(&near, "unbalanced") && !reports(&near, "beyond yield") && !reports(&near, "from time 0"),
+        "{near:?}"
+    );
 }
 
 #[test]
-fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_are_told() {
+fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_are_reported() {
     let shaken = |rows: &str| format!("{SLIDING_BLOCK}\n[shaking]\nacceleration = {rows}\n");
     let inline = Scratch::with_case(&shaken("[[0.01, 3.0, 0.0], [0.03, -2.0, 0.0]]"));
     inline.mpirun(1, &["case.toml", "-q"]).expect(0);
@@ -320,15 +323,15 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
     still.mpirun(1, &["case.toml", "-q"]).expect(0);
     assert_ne!(of(&inline), of(&still));
     let warnings = manifest(&named.path("case.out")).warnings;
-    assert!(warnings.iter().any(|told| told.contains("moves along x, and nothing holds the bodies along x")));
+    assert!(warnings.iter().any(|warning| warning.contains("moves along x, and nothing holds the bodies along x")));
     // The case that is kept has the rows, so that a restart needs no file.
     let text = manifest(&named.path("case.out")).case.text;
     assert!(text.contains("300.0 cm/s2") && !text.contains("quake.csv"), "{text}");
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, -100\n");
     named.mpirun(1, &["case.toml", "-q", "--restart", "auto"]).expect(76).says_once("shaking.acceleration was");
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, fast\n");
-    let told = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
-    told.says_once("quake.csv: line 3: `fast` is no number");
+    let reported = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
+    reported.says_once("quake.csv: line 3: `fast` is no number");
     let lengths: String = (1..=40).map(|row| format!("{row}, 1\n")).collect();
     named.write("quake.csv", format!("t [m], a [cm/s2]\n{lengths}"));
     named
@@ -339,7 +342,7 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
     named.mpirun(2, &["case.toml", "-q", "--force"]).expect(66).says_once("quake.csv: ");
 }
 
-/// A bar of 2 m by .5 m that its left end holds and its right end bends, by a stress that grows with depth.
+/// A bar of 2 m by 0.5 m that its left end holds and its right end bends, by a stress that grows with depth.
 const BENT: &str = r#"geometry = "plane-strain"
 [analysis]
 type = "quasi-static"
@@ -377,7 +380,7 @@ fn a_stress_by_depth_acts_on_a_surface_with_its_force_and_moment() {
     let scratch = Scratch::with_case(BENT);
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let rows = history(&scratch.path("case.out"));
-    // Along x -300 to +100 Pa over .5 m, along y 40 to 200: -50 and 60 N/m in the middle, and 400 (.5)^2/12 N.
+    // Along x -300 to +100 Pa over 0.5 m, along y 40 to 200: -50 and 60 N/m in the middle, and 400 (0.5)^2/12 N.
     let off =
         [("reaction-x", 50.0), ("reaction-y", -60.0)].map(|(name, expected)| at(&rows, name, 1.0) / expected - 1.0);
     let bent = [("n", -50.0), ("q", 60.0), ("m", -60.0 - 400.0 * 0.25 / 12.0)];

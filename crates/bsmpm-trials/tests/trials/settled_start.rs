@@ -230,8 +230,8 @@ fn a_toe_that_ends_in_a_point_needs_extended_splines_or_more_points() {
     let scratch = Scratch::with_case(&two);
     let off = ["--set", "solver.extension=off"];
     let run = scratch.mpirun(2, &[&["case.toml", "-q", "-o", "off"], &off[..]].concat()).expect(80);
-    let told = run.stderr.split_once("; node ").expect("the place").1;
-    assert!(told.contains(" at [17.5") && told.contains("points_per_cell = 3"), "{}", run.stderr);
+    let reported = run.stderr.split_once("; node ").expect("the place").1;
+    assert!(reported.contains(" at [17.5") && reported.contains("points_per_cell = 3"), "{}", run.stderr);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "two"]).expect(0);
     scratch.write("case.toml", &case);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "three"]).expect(0);

@@ -26,7 +26,7 @@ impl To {
     }
 }
 
-/// Steps that the run in `case.out` has told of so far.
+/// Steps that the run in `case.out` has reported so far.
 fn made(scratch: &Scratch) -> usize {
     let text = std::fs::read_to_string(scratch.path("case.out/steps.csv")).unwrap_or_default();
     text.lines().count().saturating_sub(2)

@@ -203,8 +203,8 @@ fn a_round_column_that_slides_is_the_same_on_2_x_2_ranks_whatever_couples_their_
             scratch.mpirun(ranks, &arguments).expect(0);
             agree(&scratch.path(&directory), &scratch.path("out1"));
         }
-        let anew = steps(&scratch.path("out4"));
-        println!("{further:?}: imbalance {:?}", anew.get("imbalance").unwrap().last());
+        let afresh = steps(&scratch.path("out4"));
+        println!("{further:?}: imbalance {:?}", afresh.get("imbalance").unwrap().last());
     }
 }
 
@@ -366,7 +366,7 @@ quantity = "energy"
     let pairs = [("top-y", "top-z", 1.0), ("side-x", "side-x", 1.0), ("energy-elastic", "energy-elastic", 0.25)];
     for (of_round, of_quarter, share) in pairs {
         let off = at(&quarter, of_quarter, 1.0) / (share * at(&round, of_round, 1.0)) - 1.0;
-        // Measured .12, .06 and .09 %; in cells of half the size .05, .02 and .04 %.
+        // Measured 0.12, 0.06 and 0.09 %; in cells of half the size 0.05, 0.02 and 0.04 %.
         assert!(off.abs() < 2e-3, "{of_quarter}: off by {off:e}");
     }
 }

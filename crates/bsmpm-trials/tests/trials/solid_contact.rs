@@ -1,10 +1,10 @@
-//! Solids on faces that push and rub, by the real binary: blocks that slide askew, stick, and leave.
+//! Solids on faces that push and rub, by the real binary: blocks that slide obliquely, stick, and leave.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{at, history};
 
-/// A block on a base that is inclined, by gravity, by tan(theta) = .5 along (.8, .6).
+/// A block on a base that is inclined, by gravity, by tan(theta) = 0.5 along (0.8, 0.6).
 const BLOCK: &str = r#"
 geometry = "3d"
 [analysis]
@@ -49,7 +49,7 @@ quantity = "energy"
 "#;
 
 #[test]
-fn a_block_slides_askew_with_its_acceleration_and_sticks_with_more_friction() {
+fn a_block_slides_obliquely_with_its_acceleration_and_sticks_with_more_friction() {
     let scratch = Scratch::with_case(BLOCK);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "slides"]).expect(0);
     let table = history(&scratch.path("slides"));
@@ -176,7 +176,7 @@ fn a_bar_meets_a_wall_and_leaves_it() {
 
 const BAR: &str = "box = { lower = [0.95, 0.5, 0.125], upper = [1.95, 0.75, 0.375] }\nvelocity = [1.0, 0.0, 0.0]";
 
-/// A cylinder, pressed by a smooth plate on a base that rubs, in either geometry: in part it sticks.
+/// A cylinder, pressed by a smooth plate on a base with friction, in either geometry: in part it sticks.
 fn pressed(solid: bool, friction: f64) -> String {
     let (geometry, upper, faces, body, down) = match solid {
         true => (
@@ -208,7 +208,7 @@ fn pressed(solid: bool, friction: f64) -> String {
     )
 }
 
-/// Friction goes along the radius, askew to the cells, and most of the base or a part of it slips.
+/// Friction goes along the radius, obliquely to the cells, and most of the base or a part of it slips.
 #[test]
 fn a_cylinder_that_slips_in_part_is_the_axisymmetric_one() {
     for friction in [0.05, 0.1, 0.2] {

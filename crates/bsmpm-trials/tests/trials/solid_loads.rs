@@ -126,11 +126,11 @@ fn bar(loads: &[([f64; 2], [f64; 2], [f64; 3])], cell: f64, places: &[(f64, f64)
         let [lower, upper] = [lower, upper].map(|[y, z]| format!("[2, {y}, {z}]"));
         format!("[[traction]]\nrectangle = {{ lower = {lower}, upper = {upper} }}\nstress = {stress:?}\nramp = 1.0\n")
     });
-    let told = places.iter().enumerate().map(|(number, (x, z))| {
+    let reported = places.iter().enumerate().map(|(number, (x, z))| {
         format!("[[history]]\nname = \"at{number}\"\nquantity = \"displacement\"\nat = [{x}, 0.375, {z}]\n")
     });
     let bar = changed(BAR, "cell = 0.125", &format!("cell = {cell}"));
-    let scratch = Scratch::with_case(&format!("{bar}{}{}", loads.collect::<String>(), told.collect::<String>()));
+    let scratch = Scratch::with_case(&format!("{bar}{}{}", loads.collect::<String>(), reported.collect::<String>()));
     scratch.direct(&["case.toml", "-q", "-o", "out"]).expect(0);
     let table = history(&scratch.path("out"));
     let moved = |number: usize| ["x", "y", "z"].map(|along| at(&table, &format!("at{number}-{along}"), 1.0));
@@ -138,7 +138,7 @@ fn bar(loads: &[([f64; 2], [f64; 2], [f64; 3])], cell: f64, places: &[(f64, f64)
 }
 
 /// Timoshenko's beam with Cowper's (1966) coefficient of shear; Saint-Venant's torsion of a square, whose constant is
-/// .1406 of the edge's fourth power.
+/// 0.1406 of the edge's fourth power.
 #[test]
 fn a_bar_bends_and_twists_as_beams_do() {
     let (young, poisson, edge, length) = (1e6, 0.3, 0.5_f64, 2.0_f64);
@@ -209,9 +209,10 @@ fn a_plate_across_a_slice_is_the_strip_of_plane_strain() {
         boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
         body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 0.5, 1] }, points_per_cell = 4 }]\n\
         footing = { rectangle = { lower = [0.5, 0, 1], upper = [1, 0.5, 1] }, displacement = [AHEAD, 0, -0.005], base = BASE }";
-    // What rubs in soil that yields needs far smaller steps.
-    let rubs = "{ friction_coefficient = 0.1, separates = true }";
-    for (base, ahead, cohesion) in [("\"smooth\"", "0", "1 kPa"), ("\"rough\"", "0", "1 kPa"), (rubs, "0.02", "1 MPa")]
+    // What has friction in soil that yields needs far smaller steps.
+    let has_friction = "{ friction_coefficient = 0.1, separates = true }";
+    for (base, ahead, cohesion) in
+        [("\"smooth\"", "0", "1 kPa"), ("\"rough\"", "0", "1 kPa"), (has_friction, "0.02", "1 MPa")]
     {
         let run = |geometry: &str, ranks: usize| {
             let geometry = geometry.replace("BASE", base).replace("AHEAD", ahead);
@@ -235,9 +236,9 @@ fn a_plate_across_a_slice_is_the_strip_of_plane_strain() {
     }
 }
 
-/// What rubs is rubbed against its motion, also along none of the axes.
+/// Friction acts against the motion, also along none of the axes.
 #[test]
-fn a_plate_that_slides_askew_has_its_friction_against_its_motion() {
+fn a_plate_that_slides_obliquely_has_its_friction_against_its_motion() {
     let ground = "geometry = \"3d\"\ngrid = { lower = [0, 0, 0], upper = [2, 2, 1.25], cell = 0.25, degree = \"quadratic\" }\n\
         boundary = { left = \"roller\", right = \"roller\", front = \"roller\", back = \"roller\", bottom = \"fixed\" }\n\
         body = [{ material = \"clay\", box = { lower = [0, 0, 0], upper = [2, 2, 1] }, points_per_cell = 2 }]\n\

@@ -5,7 +5,7 @@ use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{at, history};
 
-/// A rigid block that rubs is pressed into sand and then along it.
+/// A rigid block with friction is pressed into sand and then along it.
 const PLANE: &str = r#"
 geometry = "plane-strain"
 [analysis]
@@ -90,7 +90,7 @@ fn a_rigid_block_in_a_slice_is_that_of_plane_strain() {
             assert!(none || (found / expected - 1.0).abs() < 1e-8, "{of_solid}: {found} for {expected}");
         }
     }
-    // It slides: friction is .3 of the normal force.
+    // It slides: friction is 0.3 of the normal force.
     let [x, z] = ["rigid-force-x", "rigid-force-z"].map(|name| at(&solid, name, 1.0));
     assert!((x.abs() / z / 0.3 - 1.0).abs() < 0.2, "{x} of {z}");
 }
@@ -148,11 +148,11 @@ fn a_block_slides_on_rigid_terrain_and_goes_on_to_the_bit_on_1_and_2_ranks() {
 }
 
 #[test]
-fn a_block_stays_on_rigid_terrain_that_rubs_more_than_it_falls() {
+fn a_block_stays_on_rigid_terrain_with_more_friction_than_it_falls() {
     let scratch = Scratch::with_case(&sliding(0.6));
     scratch.direct(&["case.toml", "-q", "-o", "whole"]).expect(0);
     let found = history(&scratch.path("whole"));
-    // It swings by its own elasticity until .2 s, by 8 mm.
+    // It swings by its own elasticity until 0.2 s, by 8 mm.
     let moved = at(&found, "centre-of-mass-x", 0.5) - at(&found, "centre-of-mass-x", 0.25);
     assert!(moved.abs() < 5e-4, "it went {moved} m");
 }

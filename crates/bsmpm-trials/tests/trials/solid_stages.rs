@@ -81,7 +81,7 @@ fn a_shaken_slice_that_loses_sand_is_plane_strain() {
     assert!(at(&solid, "outflow", 0.3) > 0.0);
 }
 
-/// kg, m, rad/s: a cube that spins about an axis askew to the grid.
+/// kg, m, rad/s: a cube that spins about an axis oblique to the grid.
 const SPINNING: &str = r#"
 geometry = "3d"
 [analysis]

@@ -152,7 +152,7 @@ fn a_tunnel_that_a_pressure_holds_stays_as_it_was() {
     }
 }
 
-/// Half of the sliding block is gone at .02 s, and another one falls from .03 s on.
+/// Half of the sliding block is gone at 0.02 s, and another one falls from 0.03 s on.
 fn staged_block() -> String {
     let halved = changed(SLIDING_BLOCK, "upper = [0.5, 0.2] }", "upper = [0.3, 0.2] }");
     let body = |name: &str, lower: &str, upper: &str, velocity: &str| {
@@ -178,8 +178,8 @@ fn a_dynamic_run_goes_on_to_the_bit_before_at_and_after_a_stage_and_ranks_agree(
     assert!(last_frame(&whole) == last_frame(&part));
     let stages = manifest(&part).stages;
     assert_eq!(stages, manifest(&whole).stages);
-    let told: Vec<_> = stages.iter().map(|stage| (stage.step, stage.removed, stage.added, stage.reset)).collect();
-    assert_eq!(told, [(20, 64, 0, false), (30, 0, 48, true)]);
+    let reported: Vec<_> = stages.iter().map(|stage| (stage.step, stage.removed, stage.added, stage.reset)).collect();
+    assert_eq!(reported, [(20, 64, 0, false), (30, 0, 48, true)]);
     agree(&whole, &one);
     let found = history(&scratch.path("whole1"));
     let [before, after] = [0.02, 0.021].map(|t| at(&found, "mass", t));
@@ -284,9 +284,9 @@ fn loads_props_and_laws_act_while_stages_say_so_and_runs_go_on_to_the_bit() {
     assert!(at(&found, "stress-yy", 5.0).abs() < 1e-6 * PRESSURE);
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 5.0));
     assert!(closure.abs() < 1e-6 * external, "{closure:e} of {external:e}");
-    let told = manifest(&scratch.path("whole")).stages;
+    let reported = manifest(&scratch.path("whole")).stages;
     assert_eq!(
-        (&told[1].applied[..], &told[1].exchanged[..]),
+        (&reported[1].applied[..], &reported[1].exchanged[..]),
         (&["prop".into()][..], &["soil follows other".into()][..])
     );
     repeats(&scratch, &["top-y", "stress-xx", "stress-yy"], &["3", "4", "5", "6", "8", "9"]);
@@ -295,11 +295,11 @@ fn loads_props_and_laws_act_while_stages_say_so_and_runs_go_on_to_the_bit() {
 /// The whole run on one and three ranks, to 1e-8 of the largest number of a column, and each in parts that end after so
 /// many steps, to the bit.
 pub fn repeats(scratch: &Scratch, columns: &[&str], stops: &[&str]) {
-    let told = manifest(&scratch.path("whole")).stages;
+    let reported = manifest(&scratch.path("whole")).stages;
     for ranks in [1, 3] {
         scratch.goes_on(ranks, stops);
         let [whole, part] = ["whole", "part"].map(|name| format!("{name}{ranks}"));
-        assert_eq!(manifest(&scratch.path(&part)).stages, told);
+        assert_eq!(manifest(&scratch.path(&part)).stages, reported);
         let [one, more] = ["whole", &whole].map(|name| history(&scratch.path(name)));
         for column in columns {
             let [one, more] = [&one, &more].map(|found| found.get(column).expect("a column"));
@@ -393,8 +393,9 @@ fn a_stage_divides_the_strength_under_the_stress_that_is_there() {
         // The Cauchy stress is the Kirchhoff stress over J = 1 - 8e-5.
         assert!((deviator(t) - 0.4).abs() < 1e-4, "{t}: {}", deviator(t));
     }
-    let told: Vec<_> = manifest(&scratch.path("whole")).stages.iter().map(|stage| stage.strength_reduction).collect();
-    assert_eq!(told, [None, Some(2.0), Some(1.0)]);
+    let reported: Vec<_> =
+        manifest(&scratch.path("whole")).stages.iter().map(|stage| stage.strength_reduction).collect();
+    assert_eq!(reported, [None, Some(2.0), Some(1.0)]);
     repeats(&scratch, &["top-y", "stress-xx", "stress-yy"], &["3", "4", "5", "6", "7"]);
 }
 

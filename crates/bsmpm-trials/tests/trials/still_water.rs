@@ -150,7 +150,7 @@ fn a_level_that_falls_is_followed_and_goes_on_to_the_bit() {
     assert!(text("one") == text("part"));
 }
 
-/// Ground whose points carry .3 of the weight above them as a pore pressure.
+/// Ground whose points carry 0.3 of the weight above them as a pore pressure.
 fn by_ratio() -> String {
     let case = changed(GROUND, "[water]\nlevel = 12.0\n", "");
     changed(&case, "saturated_unit_weight = \"20 kN/m3\"", "ru = 0.3")

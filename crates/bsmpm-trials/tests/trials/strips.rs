@@ -79,7 +79,7 @@ quantity = "energy"
 "#;
 
 #[test]
-fn a_strip_that_rubs_and_lets_go_is_the_same_on_any_ranks_by_newton_and_after_restarts() {
+fn a_strip_with_friction_that_separates_is_the_same_on_any_ranks_by_newton_and_after_restarts() {
     let scratch = Scratch::with_case(DRAGGED);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
     let one = history(&scratch.path("one"));
@@ -133,10 +133,10 @@ fn a_strip_that_rubs_and_lets_go_is_the_same_on_any_ranks_by_newton_and_after_re
     assert!(text("three") == text("part"));
 }
 
-/// The plate as a stage applies it, before it moves, and another one lets it go while it rubs: it holds in
+/// The plate as a stage applies it, before it moves, and another one lets it go while it slides: it holds in
 /// between only.
 #[test]
-fn a_strip_that_rubs_is_applied_and_released_by_stages_on_two_ranks_and_over_restarts() {
+fn a_strip_with_friction_is_applied_and_released_by_stages_on_two_ranks_and_over_restarts() {
     let path = "path = [[0.2, 0.0, 0.0], [0.4, 0.0, -0.004], [0.8, 0.008, -0.004]]";
     let staged = changed(
         DRAGGED,

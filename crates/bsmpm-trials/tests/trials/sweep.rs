@@ -44,7 +44,7 @@ impl Bench {
         self.0.path().join(name)
     }
 
-    /// The text of a sweep, the lines that it told, and its `sweep.json`.
+    /// The text of a sweep, the lines that it reported, and its `sweep.json`.
     fn sweep(&self, options: &[&str]) -> (String, Vec<String>, Value) {
         let (output, solver) = (self.path("sweep"), self.path("solver"));
         let words = [
@@ -94,7 +94,7 @@ fn runs_that_fail_end_nothing_and_what_is_there_is_kept() {
     assert!(broken["code"] == 70 && invalid["reason"].as_str().unwrap().contains("grid"), "{found}");
     assert!(fine["is_reference"] == true && coarse["is_baseline"] == true, "{found}");
     let error = |index: usize| coarse["errors"][index].as_f64().unwrap();
-    // Cells of 10 mm are good for a few per cent of a length of .2 m, and no two grids agree to rounding.
+    // Cells of 10 mm are good for a few per cent of a length of 0.2 m, and no two grids agree to rounding.
     assert!((1e-7..0.05).contains(&error(0)) && (1e-7..0.05).contains(&error(1)), "{coarse}");
     assert!(coarse["cpu_seconds"].as_f64().unwrap() > 0.0 && coarse["peak_memory"].as_u64().unwrap() > 1 << 20);
     assert!(text.contains("cheapest within 10 % of all quantities: cell 10 mm, degree quadratic"), "{text}");
@@ -228,5 +228,5 @@ fn a_sweep_of_a_thick_cylinder_leads_to_its_closed_form() {
     let limit = found["reference"]["values"][0][0].as_f64().unwrap();
     let (radius, wall, poisson, young) = (0.5_f64, 1.0_f64, 0.3, 1e6);
     let exact = 2.0 * (1.0 - poisson * poisson) * radius.powi(2) * wall / (young * (wall.powi(2) - radius.powi(2)));
-    assert!((limit / exact - 1.0).abs() <= 1e-5, "{limit:e} {exact:e}"); // 2e-6; .005 % with the smallest cells
+    assert!((limit / exact - 1.0).abs() <= 1e-5, "{limit:e} {exact:e}"); // 2e-6; 0.005 % with the smallest cells
 }

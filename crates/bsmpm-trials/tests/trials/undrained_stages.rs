@@ -57,7 +57,7 @@ fn a_load_on_ground_that_has_drained_goes_to_the_water_first() {
     assert!(pressure(4.0).abs() < 1e-3 * LOADS[0] && (settled(4.0) / LOADS[0] - 1.0).abs() < 1e-3, "{}", settled(4.0));
     let first = share * LOADS[1];
     assert!((pressure(4.005) / first - 1.0).abs() < 1e-3, "{}, {first}", pressure(4.005));
-    // Steps of 5 ms: .44 and .38 % off in the pressure, .6 and .3 % in the settlement.
+    // Steps of 5 ms: 0.44 and 0.38 % off in the pressure, 0.6 and 0.3 % in the settlement.
     for later in [0.1, 0.3] {
         let [there, mean] = left(share * later, 0.025).map(|left| left * first);
         let [p, s] = [pressure(4.0 + later), settled(4.0 + later) - LOADS[0]];
@@ -129,14 +129,14 @@ quantity = "water-balance"
 "#;
 
 /// The water loses what the weight of the cap under water pressed with, and comes back through the base; what is laid
-/// bare is closed, which is told. What the cap took away of the water is in the books.
+/// bare is closed, which is reported. What the cap took away of the water is in the books.
 #[test]
 fn water_under_what_is_removed_loses_its_weight_and_comes_back() {
     let scratch = Scratch::with_case(RELIEVED);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "out"]).expect(0);
-    let is_told =
-        |out: &str| manifest(&scratch.path(out)).warnings.iter().any(|told| told.contains("what is laid bare"));
-    assert!(is_told("out"));
+    let is_reported =
+        |out: &str| manifest(&scratch.path(out)).warnings.iter().any(|warning| warning.contains("what is laid bare"));
+    assert!(is_reported("out"));
     let found = history(&scratch.path("out"));
     let of = |name: &str, t: f64| at(&found, name, t);
     let (first, path): (f64, f64) = (-(20e3 - 9810.0) * 0.25, 0.75);
@@ -161,7 +161,7 @@ fn water_under_what_is_removed_loses_its_weight_and_comes_back() {
     let drained = changed(RELIEVED, "face = \"bottom\"", "from = [0, 0.75]\nto = [0.1, 0.75]");
     scratch.write("drained.toml", &drained);
     scratch.mpirun(1, &["drained.toml", "-q", "-o", "drained"]).expect(0);
-    assert!(!is_told("drained"));
+    assert!(!is_reported("drained"));
     let found = history(&scratch.path("drained"));
     let balance = at(&found, "water-balance", 1.3);
     assert!(at(&found, "top", 1.3).abs() < 0.2 * first.abs() && balance.abs() < 1e-7, "{balance:e}");

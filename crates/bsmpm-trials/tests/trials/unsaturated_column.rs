@@ -21,8 +21,8 @@ fn conducts(p: f64) -> f64 {
     1.0 - 2.207 * (1.0 - saturation(p)).max(0.0).powf(1.0121)
 }
 
-/// What is compared at a time: pore pressures at .525 and .975 m, Pa; m of water that came out since the rain, and m of
-/// settlement since then.
+/// What is compared at a time: pore pressures at 0.525 and 0.975 m, Pa; m of water that came out since the rain, and m
+/// of settlement since then.
 type Row = [f64; 4];
 
 /// Finite volumes in space, Euler backwards in time, Newton's method; what presses down from above lags an iteration.
@@ -166,7 +166,7 @@ fn a_column_drains_as_by_lines_with_a_measured_retention_curve() {
         let found = of(*time);
         let found = [found[0], found[1], (found[2] - start[2]) / WIDTH, start[3] - found[3]];
         let off: Vec<f64> = found.iter().zip(exact).map(|(found, exact)| found / exact - 1.0).collect();
-        // Measured: 3.7 Pa; .05, .3 and .3 %. The reference is of small strain, which is .3 % here.
+        // Measured: 3.7 Pa; 0.05, 0.3 and 0.3 %. The reference is of small strain, which is 0.3 % here.
         assert!((0..2).all(|k| (found[k] - exact[k]).abs() < 5e-4 * WEIGHT), "{time}: {found:?} {exact:?}");
         assert!(off[2].abs() < 1e-3 && off[3].abs() < 5e-3, "{time}: {found:?} {exact:?}");
         assert!(of(*time)[4].abs() < 1e-6, "balance of water");

@@ -57,14 +57,14 @@ fn seepage_along_an_infinite_slope_leaves_the_share_of_its_buoyant_weight() {
     });
     let tan = |degrees: f64| degrees.to_radians().tan();
     let closed = (1.0 - WEIGHTS[1] / WEIGHTS[0]) * tan(FRICTION) / tan(INCLINED);
-    println!("seepage along the slope, h = .5, .25 m: {found:.4?}; {closed:.4}");
+    println!("seepage along the slope, h = 0.5, 0.25 m: {found:.4?}; {closed:.4}");
     assert!((closed - 0.9802).abs() < 5e-5);
     assert!(found.iter().all(|found| (found / closed - 1.0).abs() < 1e-3), "{found:?}");
 }
 
 /// Still water whose line is the surface: its pressure is that of the depth straight below. On rock that the
 /// cells do not follow; of the soil's upper half, as cells that both fill give the rock what is the soil's to carry
-/// (all of it: .951, .898).
+/// (all of it: 0.951, 0.898).
 #[test]
 fn a_line_along_an_infinite_slope_presses_as_its_depth_straight_below() {
     let rise = LENGTH * INCLINED.to_radians().tan();
@@ -92,7 +92,7 @@ fn a_line_along_an_infinite_slope_presses_as_its_depth_straight_below() {
     });
     let (tan, cos) = (|degrees: f64| degrees.to_radians().tan(), INCLINED.to_radians().cos());
     let closed = tan(FRICTION) / tan(INCLINED) * (1.0 - WEIGHTS[1] / (WEIGHTS[0] * cos * cos));
-    println!("a line along the slope, h = .5, .25 m: {found:.4?}; {closed:.4}");
+    println!("a line along the slope, h = 0.5, 0.25 m: {found:.4?}; {closed:.4}");
     assert!((closed - 0.8552).abs() < 5e-5);
     assert!((found[0] / closed - 1.0).abs() < 0.0125 && (found[1] / closed - 1.0).abs() < 0.002, "{found:?}");
 }

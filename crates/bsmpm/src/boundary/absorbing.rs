@@ -43,7 +43,7 @@ impl Dashpots {
         let mut dashpots = Vec::new();
         for (number, face) in boundary.absorbing().enumerate() {
             let (edge, last) = (face_cell(grid, face.axis, face.upper), face.last_cell(grid));
-            // A point's mass weighs by its own radius, what it tells of the face by the face's.
+            // A point's mass weighs by its own radius, what it says of the face by the face's.
             let weight = |x: &Vector<D>| {
                 let mut on_face = *x;
                 on_face[face.axis] = if face.upper { grid.axes()[face.axis].length() } else { 0.0 };

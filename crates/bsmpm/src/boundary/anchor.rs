@@ -2,7 +2,8 @@
 //! start.
 //!
 //! Points that moved with the nodes instead would lag behind where rows of cells empty: on a column compressed by 30 %
-//! a load would come to lie .013 m of .70 m below the surface. And it tells where a strip has let go of its material.
+//! a load would come to lie 0.013 m of 0.70 m below the surface. And it reports where a strip has let go of its
+//! material.
 
 use super::strip::{Strip, displacement, reduce};
 use super::surface::{Anchors, SurfacePoint};

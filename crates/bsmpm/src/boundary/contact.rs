@@ -55,10 +55,11 @@ impl<const D: usize> Contacts<D> {
                 }
                 let along = std::array::from_fn(|component| {
                     let other = rivals().any(|other| other.axis == component && on_face(node, component, other.upper));
-                    // Along an edge in space that it shares with a face that rubs, a smooth one decides nothing.
-                    let rubs = |of: &Support<D>| of.contact.is_some_and(|law| law.friction > 0.0);
+                    // Along an edge in space that it shares with a face with friction, a smooth one decides nothing.
+                    let has_friction = |of: &Support<D>| of.contact.is_some_and(|law| law.friction > 0.0);
                     let smooth = D > 2 && law.friction == 0.0;
-                    let other = other || smooth && rivals().any(|of| rubs(of) && on_face(node, of.axis, of.upper));
+                    let other =
+                        other || smooth && rivals().any(|of| has_friction(of) && on_face(node, of.axis, of.upper));
                     component != face.axis && free[Nodal::<D>::at(node, component)] && !other
                 });
                 let inward = if face.upper { -1.0 } else { 1.0 };
@@ -149,7 +150,7 @@ impl<const D: usize> Contacts<D> {
         for at in &self.nodes {
             let Status::Slip(direction) = at.status else { continue };
             let limit = at.limit(reaction);
-            let friction = at.rubbed(&direction, &at.slip(u), limit);
+            let friction = at.friction_force(&direction, &at.slip(u), limit);
             for component in (0..D).filter(|&component| at.along[component] && limit > 0.0) {
                 f_oob[Nodal::<D>::at(at.node, component)] += friction[component];
                 reaction[Nodal::<D>::at(at.node, component)] = friction[component];
@@ -165,7 +166,7 @@ impl<const D: usize> Contacts<D> {
             let acts = at.limit(reaction) > 0.0;
             let factor = if acts { at.law.friction * at.inward } else { 0.0 };
             let normal = out[Nodal::<D>::at(at.node, at.axis)];
-            let beside = if acts { at.rubbed(&direction, &at.slip(v), 0.0) } else { Vector::zeros() };
+            let beside = if acts { at.friction_force(&direction, &at.slip(v), 0.0) } else { Vector::zeros() };
             for component in (0..D).filter(|&component| at.along[component]) {
                 out[Nodal::<D>::at(at.node, component)] += factor * direction[component] * normal - beside[component];
             }

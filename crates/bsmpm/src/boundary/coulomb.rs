@@ -1,4 +1,4 @@
-//! Unilateral contact with Coulomb's friction, whatever has it: its law, its statuses, what is told of it.
+//! Unilateral contact with Coulomb's friction, whatever has it: its law, its statuses, what is reported of it.
 
 use crate::tensor::Vector;
 
@@ -7,7 +7,8 @@ use crate::tensor::Vector;
 pub struct Contact {
     /// -  coefficient of friction mu
     pub friction: f64,
-    /// whether material comes off it; else its normal component is held both ways, and nothing rubs where it pulls
+    /// whether material comes off it; else its normal component is held both ways, and there is no friction where it
+    /// pulls
     pub lifts: bool,
 }
 

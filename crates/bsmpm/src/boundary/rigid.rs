@@ -15,7 +15,7 @@ mod terrain;
 pub use body::{MOTIONS, RigidBody, RigidState, overlapping};
 pub use extent::extents;
 pub use outline::{Nearest, Outline, Sizes};
-pub use point::{Along, Grip};
+pub use point::{Along, ContactStatus};
 pub use surroundings::{Reaching, Surroundings};
 pub use terrain::Terrain;
 
@@ -97,7 +97,7 @@ impl<const D: usize> RigidContacts<D> {
             return vec![false; nodes];
         }
         let mut marks = vec![0.0; nodes];
-        for point in self.points.iter().filter(|point| point.grip != Grip::Open) {
+        for point in self.points.iter().filter(|point| point.status != ContactStatus::Open) {
             self.offsets.iter().for_each(|offset| marks[point.first_node + offset] = 1.0);
         }
         halo.max(&mut marks, 1);
@@ -105,7 +105,7 @@ impl<const D: usize> RigidContacts<D> {
     }
 
     /// Whether any point may rub.
-    pub fn rubs(&self) -> bool {
+    pub fn has_friction(&self) -> bool {
         self.bodies.iter().any(|at| at.body.friction > 0.0)
     }
 
@@ -205,7 +205,7 @@ impl<const D: usize> RigidContacts<D> {
     }
 
     fn scatter(&self, force: impl Fn(&RigidPoint<D>) -> Vector<D>, out: &mut Contributions) {
-        for point in self.points.iter().filter(|point| point.grip != Grip::Open) {
+        for point in self.points.iter().filter(|point| point.status != ContactStatus::Open) {
             let force = force(point);
             let out = out.patch(point.first_node);
             for (N, offset) in point.N.iter().zip(&self.offsets) {
@@ -216,7 +216,7 @@ impl<const D: usize> RigidContacts<D> {
 
     /// Adds the symmetric part of the stiffness of all points, the bodies held, to the matrix.
     pub fn assemble(&self, solver: &mut dyn LinearSolver) {
-        for point in self.points.iter().filter(|point| point.grip != Grip::Open) {
+        for point in self.points.iter().filter(|point| point.status != ContactStatus::Open) {
             solver.add(point.first_node, &point.block());
         }
     }
@@ -270,8 +270,8 @@ impl<const D: usize> RigidContacts<D> {
         let motions = self.found(u, halo);
         let doubt = (force, ROUNDING * self.edge);
         let moved: Vec<Vector<D>> = self.points.iter().map(|point| self.moved(point, u, &motions)).collect();
-        let grips = self.points.iter().zip(&moved).map(|(point, moved)| point.corrected(moved, doubt));
-        let grips: Vec<(Grip, f64)> = grips.collect();
+        let statuses = self.points.iter().zip(&moved).map(|(point, moved)| point.corrected(moved, doubt));
+        let statuses: Vec<(ContactStatus, f64)> = statuses.collect();
         let kind = usize::from(D > 2) + usize::from(D > 2 && self.dt == 0.0);
         let share = if passes < AT_ONCE[kind] {
             0.0
@@ -280,15 +280,15 @@ impl<const D: usize> RigidContacts<D> {
         } else {
             1.0
         };
-        let mut most = [grips.iter().map(|(_, by)| *by).fold(0.0, f64::max)];
+        let mut most = [statuses.iter().map(|(_, by)| *by).fold(0.0, f64::max)];
         halo.maximum(&mut most);
         let (mut corrected, mut released) = ([0.0], vec![false; self.points.len()]);
-        for (number, (grip, by)) in grips.into_iter().enumerate() {
+        for (number, (status, by)) in statuses.into_iter().enumerate() {
             let point = &mut self.points[number];
-            if point.grip != grip && by >= share * most[0] {
+            if point.status != status && by >= share * most[0] {
                 corrected[0] += 1.0;
-                released[number] = point.grip == Grip::Stick;
-                point.take(grip, &moved[number]);
+                released[number] = point.status == ContactStatus::Stick;
+                point.take(status, &moved[number]);
             }
         }
         halo.reduce(&mut corrected);
@@ -304,7 +304,8 @@ impl<const D: usize> RigidContacts<D> {
             return;
         }
         let mut met = vec![0.0; self.bodies.len()];
-        let is_new = |point: &&RigidPoint<D>| point.grip != Grip::Open && point.gap_before() > CLOSE * self.edge;
+        let is_new =
+            |point: &&RigidPoint<D>| point.status != ContactStatus::Open && point.gap_before() > CLOSE * self.edge;
         self.points.iter().filter(is_new).for_each(|point| met[point.body] = 1.0);
         halo.maximum(&mut met);
         for (at, _) in self.bodies.iter_mut().zip(met).filter(|(_, met)| *met > 0.0) {
@@ -323,15 +324,15 @@ impl<const D: usize> RigidContacts<D> {
             let way = point.displacement(&self.offsets, u);
             work[0].add(mean.dot(&way));
             work[1].add(grown.dot(&way));
-            work[2].add(if self.dt > 0.0 { 0.5 * point.rubbed(&moved) } else { 0.0 });
+            work[2].add(if self.dt > 0.0 { 0.5 * point.friction_work(&moved) } else { 0.0 });
         }
         work
     }
 
     /// N  tangential forces on each of this rank's `count` points, which the next step starts from; none where nothing
-    /// rubs.
+    /// has friction.
     pub fn carried(&self, u: &[f64], count: usize, halo: &dyn Halo) -> Option<Vec<Vector<D>>> {
-        if !self.rubs() {
+        if !self.has_friction() {
             return None;
         }
         let (motions, mut carried) = (self.found(u, halo), vec![Vector::zeros(); count]);
@@ -363,7 +364,7 @@ impl<const D: usize> RigidContacts<D> {
             let touched = f64::from(u8::from(pushed > 0.0));
             let work = point.mean(&moved, self.dt > 0.0).0.dot(&point.displacement(&self.offsets, u));
             let slipped = pushed.max(0.0) * point.slipped(&moved);
-            let each = [touched, pushed.max(0.0), slipped, -point.rubbed(&moved), work];
+            let each = [touched, pushed.max(0.0), slipped, -point.friction_work(&moved), work];
             sums[5 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
             let each = [-gap, -gap * touched / self.edge, advance * touched / self.edge];
             most[3 * point.body..].iter_mut().zip(each).for_each(|(most, value)| *most = most.max(value));

@@ -14,10 +14,10 @@
 //! strip then follows the motions of both in parts ([`MotionShare`]), and its force counts for both in the same parts.
 //! So the force of a strip is the one that does work on its motion: the sum of forces at its nodes.
 
-mod grip;
+mod contact;
 mod point;
 
-pub use grip::StripContact;
+pub use contact::StripContact;
 
 use super::coulomb::ContactReport;
 use super::surface::{Attachment, Surface, SurfacePoint, on_grid};
@@ -28,7 +28,7 @@ use crate::parallel::{Halo, LinearSolver};
 use crate::schedule::between;
 use crate::tensor::Vector;
 use crate::water::pore_pressure::PorePressure;
-use grip::ContactState;
+use contact::ContactState;
 use point::{LENGTHS, StripPoint, StripSums, contact_report};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -184,7 +184,7 @@ pub struct StripReport {
 
 /// Work of strips in a step, by the mean of their tractions at its ends, N m.
 #[derive(Clone, Debug, Default)]
-pub struct GripWork {
+pub struct StripWork {
     /// by the strips' motion
     pub given: Exact,
     /// by the displacement of the material at them
@@ -192,7 +192,7 @@ pub struct GripWork {
     /// half of what the tractions have grown, times that displacement
     pub grown: Exact,
     /// of the first, what friction at strips dissipates
-    pub rubbed: Exact,
+    pub friction_work: Exact,
 }
 
 /// The strips' points of this rank in one step.
@@ -218,12 +218,12 @@ impl<const D: usize> StripAttachments<D> {
                 let place = displacement(strips, number, index, t);
                 let motion = displacement(strips, number, index, t + dt) - place;
                 let carried = surface.traction[number][index];
-                let grip = strip.contact.map(|contact| ContactState::of(contact, &carried));
+                let state = strip.contact.map(|contact| ContactState::of(contact, &carried));
                 // The material across a gap is what the gap is to.
                 let off = strip
                     .contact
-                    .zip(grip)
-                    .map(|(contact, grip)| contact.inward * grip.gap_before(&carried, strip.penalty));
+                    .zip(state)
+                    .map(|(contact, state)| contact.inward * state.gap_before(&carried, strip.penalty));
                 let x = point.x + place;
                 let x = off.map_or(x, |off| x + off);
                 let attachment = std::array::from_fn(|c| {
@@ -242,7 +242,7 @@ impl<const D: usize> StripAttachments<D> {
                     normal: strip.normal,
                     motion,
                     carried,
-                    grip,
+                    state,
                 });
             }
         }
@@ -256,7 +256,7 @@ impl<const D: usize> StripAttachments<D> {
         for held in &mut self.held {
             let Some(attachment) = held.attachment.iter().flatten().next() else { continue };
             let water = pores.at(attachment.weights(offsets), &held.place);
-            held.grip.iter_mut().for_each(|grip| grip.water = water);
+            held.state.iter_mut().for_each(|state| state.water = water);
         }
     }
 
@@ -264,10 +264,10 @@ impl<const D: usize> StripAttachments<D> {
     pub fn recall(&mut self, guess: &[f64]) {
         let offsets = &self.offsets;
         for held in &mut self.held {
-            let Some(mut grip) = held.grip else { continue };
-            let (trial, before) = (held.trial(&grip, offsets, guess), held.own(grip.start(&held.carried)));
-            grip.recall(&trial, &before);
-            held.grip = Some(grip);
+            let Some(mut state) = held.state else { continue };
+            let (trial, before) = (held.trial(&state, offsets, guess), held.own(state.start(&held.carried)));
+            state.recall(&trial, &before);
+            held.state = Some(state);
         }
     }
 
@@ -275,10 +275,10 @@ impl<const D: usize> StripAttachments<D> {
     pub fn correct(&mut self, u: &[f64], force: f64, halo: &dyn Halo) -> usize {
         let (offsets, mut corrected) = (&self.offsets, [0.0]);
         for held in &mut self.held {
-            let Some(mut grip) = held.grip else { continue };
-            let is_corrected = grip.correct(&held.trial(&grip, offsets, u), force / held.area);
+            let Some(mut state) = held.state else { continue };
+            let is_corrected = state.correct(&held.trial(&state, offsets, u), force / held.area);
             corrected[0] += f64::from(u8::from(is_corrected));
-            held.grip = Some(grip);
+            held.state = Some(state);
         }
         halo.reduce(&mut corrected);
         corrected[0] as usize
@@ -296,8 +296,8 @@ impl<const D: usize> StripAttachments<D> {
         for held in &self.held {
             let moved = held.displacement(&self.offsets, v);
             let force = held.part(moved) * (held.penalty * held.area);
-            let force = match &held.grip {
-                Some(grip) => force + held.own(grip.rubbing(&moved)) * (held.penalty * held.area),
+            let force = match &held.state {
+                Some(state) => force + held.own(state.rubbing(&moved)) * (held.penalty * held.area),
                 None => force,
             };
             held.spread(&self.offsets, &force, out);
@@ -321,15 +321,15 @@ impl<const D: usize> StripAttachments<D> {
     }
 
     /// Work on this rank under the converged displacement `u`.
-    pub fn work(&self, u: &[f64]) -> GripWork {
-        let mut work = GripWork::default();
+    pub fn work(&self, u: &[f64]) -> StripWork {
+        let mut work = StripWork::default();
         for held in &self.held {
             let (before, after) = (held.before(), held.traction(&self.offsets, u));
             let (moved, mean) = (held.displacement(&self.offsets, u), held.mean(&self.offsets, u));
             work.given.add(mean.dot(&held.motion));
             work.taken.add(mean.dot(&moved));
-            if let Some(grip) = &held.grip {
-                work.rubbed.add(mean.dot(&grip.slid(&held.trial(grip, &self.offsets, u), held.penalty)));
+            if let Some(state) = &held.state {
+                work.friction_work.add(mean.dot(&state.slid(&held.trial(state, &self.offsets, u), held.penalty)));
                 // The force at the end, less the one that is counted.
                 work.grown.add((after * held.area - mean).dot(&moved));
             } else {
@@ -373,8 +373,8 @@ impl<const D: usize> StripAttachments<D> {
             }
             let most = longest[LENGTHS * held.strip..].iter_mut().zip(lengths);
             most.for_each(|(most, length)| *most = f64::max(*most, length));
-            traction[held.strip][held.point] = match &held.grip {
-                Some(grip) => held.own(grip.carry(&held.trial(grip, &self.offsets, u), &held.carried)),
+            traction[held.strip][held.point] = match &held.state {
+                Some(state) => held.own(state.carry(&held.trial(state, &self.offsets, u), &held.carried)),
                 None => acting,
             };
             if let Some(there) = there[held.strip].get_mut(held.point) {

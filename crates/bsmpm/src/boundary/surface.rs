@@ -11,9 +11,9 @@ use crate::tensor::Vector;
 use crate::water::crossed::{Crossed, Flowed};
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
-/// It sets the reach beyond the cells that hold points: .75, 1.29 and 1.85 cells for the orders 1, 2 and 3. With a much
-/// shorter one a strip would let go where the row of cells at it has emptied while the points below are still at its
-/// base.
+/// It sets the reach beyond the cells that hold points: 0.75, 1.29 and 1.85 cells for the orders 1, 2 and 3. With a
+/// much shorter one a strip would let go where the row of cells at it has emptied while the points below are still at
+/// its base.
 const NEAR: f64 = 0.25;
 /// Parts of a mean cell by which a surface point may lie outside the grid and still be on its face: rounding of what
 /// it has moved.
@@ -27,7 +27,7 @@ pub struct SurfacePoint<const D: usize> {
     /// m^(D-1)  share of the area
     pub area: f64,
     /// m  corners of the piece that it stands for, in turn: of a segment each end twice, of a triangle one of them; all
-    /// the point itself where nothing is told
+    /// the point itself where nothing is reported
     pub corners: [Vector<D>; CORNERS],
 }
 

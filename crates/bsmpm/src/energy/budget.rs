@@ -3,19 +3,19 @@
 //! In a state after any number of steps, T + E + plastic <= T0 + E0 + external: elastic energy and dissipation are
 //! never negative, so that what is moving, strained and dissipated was there at the start or is work of gravity, loads
 //! and what moves. A method whose force does not do the work of its stress makes energy all the same; no measure of the
-//! equilibrium tells, as each step is in balance.
+//! equilibrium reports, as each step is in balance.
 //!
 //! What an algorithm has lost can be made again unseen. Growth since the state with the least energy would show it
-//! (short collapse .009, in steps of 10 ms .031), but damped oscillators pass .05, and small blocks that a sudden force
-//! sets in motion pass .16 in their first steps.
+//! (short collapse 0.009, in steps of 10 ms 0.031), but damped oscillators pass 0.05, and small blocks that a sudden
+//! force sets in motion pass 0.16 in their first steps.
 
 use super::Stored;
 use crate::error::StepError;
 
 /// Part of the largest energy by which a right run may seem to have grown: mean forces, mapped
-/// accelerations and what points keep to themselves are exact only in the limit. The short collapse reaches .0013 (in
-/// steps of 10 ms .025, which do not resolve its elastic waves), with dilation = 5 degrees .012. What makes
-/// energy passes .05 and goes on to several times the whole.
+/// accelerations and what points keep to themselves are exact only in the limit. The short collapse reaches 0.0013 (in
+/// steps of 10 ms 0.025, which do not resolve its elastic waves), with dilation = 5 degrees 0.012. What makes
+/// energy passes 0.05 and goes on to several times the whole.
 const SLACK: f64 = 0.05;
 
 /// What a step took in and dissipated, and what the points have after it, J.
@@ -80,7 +80,7 @@ impl Budget {
         let energy = step.stored.kinetic + step.stored.elastic + self.plastic;
         if self.largest == 0.0 {
             // The mean of a force that grows from nothing is not what numerical damping has moved by: after a first
-            // step of masses without springs energy is 4 % beyond its work at a spectral radius of .9, 15 % at .5;
+            // step of masses without springs energy is 4 % beyond its work at a spectral radius of 0.9, 15 % at 0.5;
             // after the second 1 %.
             self.start = self.start.max(energy - self.external);
         }
@@ -131,14 +131,14 @@ mod tests {
     #[test]
     fn a_first_step_from_nothing_opens_the_books_and_what_is_made_later_is_found() {
         let mut budget = Budget::open(Stored::default());
-        // A mass under a force that grows by 1 N a second, steps of 1 s, spectral radius .5.
+        // A mass under a force that grows by 1 N a second, steps of 1 s, spectral radius 0.5.
         for step in [turnover(0.1667, 0.1953), turnover(2.02, 2.2)] {
             budget.enter(&step);
             assert!(budget.require().is_ok(), "{budget:?}");
         }
         budget.enter(&turnover(0.0, 2.4));
         assert!(budget.require().is_err(), "{budget:?}");
-        // A mass of 1 on a dashpot of 30 under 1 N, in steps of .1 s.
+        // A mass of 1 on a dashpot of 30 under 1 N, in steps of 0.1 s.
         let (mut damped, mut v, mut a, dt) = (Budget::open(Stored::default()), 0.0, 1.0, 0.1);
         for _ in 0..20 {
             let du: f64 = (1.0 + 4.0 / dt * v + a) / (4.0 / (dt * dt) + 30.0 / dt);

@@ -1,4 +1,4 @@
-//! Which cells hold points, seen across the cuts between ranks: what tells the inside of a body from its edge.
+//! Which cells hold points, seen across the cuts between ranks: what distinguishes the inside of a body from its edge.
 
 use super::Grid;
 use crate::parallel::Halo;

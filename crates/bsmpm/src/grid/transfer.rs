@@ -155,7 +155,7 @@ pub fn divergence_of<K: Kinematics<D>, const D: usize>(
     }))
 }
 
-/// Scatter of squared gradients: sum_p weight_p |grad N_Ip|^2; tells nodes that have stiffness but no mass.
+/// Scatter of squared gradients: sum_p weight_p |grad N_Ip|^2; shows nodes that have stiffness but no mass.
 pub fn squared_gradients<const D: usize>(shape: &Shape<D>, weight: impl Fn(usize) -> f64 + Sync) -> Contributions {
     with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<1>| {
         for p in points {

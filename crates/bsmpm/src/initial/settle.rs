@@ -100,14 +100,14 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
         // What is out of balance at first, the stress beyond yield returned, is held by forces that go.
         let (held, next) = (held.get_or_insert(balance.f_oob), (left - part).max(0.0));
         start.nodes.f_ext.iter_mut().zip(&*held).for_each(|(force, held)| *force -= next * held);
-        let around = (&mut start.grips, &*points);
+        let around = (&mut start.attachments, &*points);
         let found =
             solve::contact::find(sought, &start.shape, &mut start.nodes, around, &at_rest, (halo, solver), &mut counts);
         match found {
             Ok(found) => {
                 let (answers, state) = commit::answers(model, &found.trial, points, halo)?;
                 let (_, traction) =
-                    start.grips.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
+                    start.attachments.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
                 points.surface.traction = traction;
                 for (p, answer) in answers.iter().enumerate() {
                     points.b_e.set(p, answer.b_e);

@@ -38,7 +38,7 @@ pub trait Law {
 
     /// Whether its elastic stress is linear in the strain, by [`Law::moduli`]. A law whose is not has its own
     /// [`Law::stress`], [`Law::strain`] and [`Law::energy`], and keeps what a projection leaves also where the trial
-    /// does not yield: that tells tangent and elastic state then, and its branch is [`Branch::Elastic`].
+    /// does not yield: that gives tangent and elastic state then, and its branch is [`Branch::Elastic`].
     const LINEAR: bool = true;
 
     /// The elastic part.

@@ -4,7 +4,7 @@ use super::Material;
 
 /// Bisections of the mobilised strength: 4e-6 of a strength remains.
 const BISECTIONS: usize = 28;
-/// Times its strength that a stress is told to need at most: tension beyond an apex has no end.
+/// Times its strength that a stress is asked to need at most: tension beyond an apex has no end.
 const MOST: f64 = 16.0;
 /// Part of its strength within which a stress is on the yield surface.
 const ON_SURFACE: f64 = 1e-4;
@@ -31,7 +31,7 @@ impl Material {
             let middle = 0.5 * (lower + upper);
             if outside(middle) { lower = middle } else { upper = middle }
         }
-        // What is less than can be told is nothing.
+        // What is less than can be determined is nothing.
         if lower == 0.0 { 0.0 } else { upper }
     }
 

@@ -69,7 +69,7 @@ impl Response {
     /// Material that keeps it is given `b_trial exp(⅔ g)` in the next step, `ε_trial + g/3 I`: it stays at the apex
     /// until the gap has closed, and then resists at the volume at which it came apart: the volume correction of Klár
     /// et al. (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a step, so that the
-    /// tangent keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what gapes is
+    /// tangent keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what opens is
     /// filled.
     #[inline]
     pub fn gap(&self) -> f64 {

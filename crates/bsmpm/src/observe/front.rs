@@ -35,8 +35,8 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
     }
     // Of a cell one rank alone has points.
     let volume = |points: &CellPoints| points.iter().map(|[_, volume]| volume).sum::<f64>();
-    let mut told: Vec<f64> = held.iter().flat_map(|points| [points.len() as f64, volume(points)]).collect();
-    halo.reduce(&mut told);
+    let mut sums: Vec<f64> = held.iter().flat_map(|points| [points.len() as f64, volume(points)]).collect();
+    halo.reduce(&mut sums);
     let mut front = 0.0_f64;
     for at in (0..held.len()).rev() {
         if front > 0.0 && (at + 1).is_multiple_of(strands) {
@@ -45,7 +45,7 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
         // Copies of a breakpoint bound cells without length, which hold nothing.
         let before = (0..at / strands).rev().find(|&column| grid.axes()[0].has_length(column));
         let before = before.map(|column| column * strands + at % strands);
-        let cells = [before, Some(at)].map(|cell| cell.filter(|&cell| told[2 * cell] > 0.0));
+        let cells = [before, Some(at)].map(|cell| cell.filter(|&cell| sums[2 * cell] > 0.0));
         let cell = std::array::from_fn(|axis| match axis {
             0 => at / strands,
             _ if axis == D - 1 => row,
@@ -56,9 +56,9 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
         });
         let (_, size) = grid.cell_box(&cell);
         let wanted = FULL * grid.cell_volume::<K>(&cell);
-        let most: f64 = cells.iter().flatten().map(|cell| told[2 * cell + 1]).sum();
+        let most: f64 = cells.iter().flatten().map(|cell| sums[2 * cell + 1]).sum();
         if cells[1].is_some() && most >= wanted * (1.0 - f64::EPSILON.sqrt()) {
-            let all = of_all_ranks(&held, &told, &cells, halo);
+            let all = of_all_ranks(&held, &sums, &cells, halo);
             let first = grid.axes()[0].breakpoint(cell[0]);
             front = front.max(end_of_full(&all, size[0], wanted).filter(|&x| x >= first).unwrap_or(0.0));
         }
@@ -73,11 +73,11 @@ fn lowest_row<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Hal
 }
 
 /// The points of some cells, on every rank in the order of their places.
-fn of_all_ranks(held: &[CellPoints], told: &[f64], cells: &[Option<usize>], halo: &dyn Halo) -> CellPoints {
+fn of_all_ranks(held: &[CellPoints], sums: &[f64], cells: &[Option<usize>], halo: &dyn Halo) -> CellPoints {
     let mut numbers = Vec::new();
     for &cell in cells.iter().flatten() {
         let from = numbers.len();
-        numbers.resize(from + 2 * told[2 * cell] as usize, 0.0);
+        numbers.resize(from + 2 * sums[2 * cell] as usize, 0.0);
         numbers[from..].iter_mut().zip(held[cell].as_flattened()).for_each(|(slot, number)| *slot = *number);
     }
     halo.reduce(&mut numbers);

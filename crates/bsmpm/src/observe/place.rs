@@ -26,7 +26,7 @@ const CORNER: f64 = 2.0;
 pub enum Configuration {
     /// Where points were before anything moved, or where a stage placed them: the places belong to the material.
     Initial,
-    /// The same of places that are told to be in material or at its surface.
+    /// The same of places that are asked to be in material or at its surface.
     Surface,
     /// Where points are.
     Present,

@@ -25,8 +25,8 @@ pub struct Section<const D: usize> {
 }
 
 /// Forces of the material beyond a section on that before it. In a plane they are per metre of thickness, t is the
-/// first direction and the second is the plane's normal, along which nothing is told. In axisymmetry they are sums over
-/// one radian of the surface that the line sweeps: of the components in the meridian plane, not of vectors.
+/// first direction and the second is the plane's normal, along which nothing is reported. In axisymmetry they are sums
+/// over one radian of the surface that the line sweeps: of the components in the meridian plane, not of vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SectionForces {
     /// N  int sigma_nn dA, n = t1 x t2, in a plane to the right of t; positive in tension

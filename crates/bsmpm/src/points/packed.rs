@@ -91,7 +91,7 @@ impl<const D: usize, T: Components> Packed<D, T> {
 
     /// Whether nothing is lost with what is not held: it is zero, or what is held is not finite either, which no step
     /// takes.
-    fn tells_all(tensor: &T) -> bool {
+    fn sends_all(tensor: &T) -> bool {
         Self::holds(tensor) || Self::PLACES.iter().any(|&place| !tensor.numbers()[place].is_finite())
     }
 
@@ -108,7 +108,7 @@ impl<const D: usize, T: Components> Packed<D, T> {
 
     #[inline(always)]
     fn keep(numbers: &mut [f64], p: usize, tensor: T) {
-        debug_assert!(Self::tells_all(&tensor), "of {:?} not all is held", tensor.numbers());
+        debug_assert!(Self::sends_all(&tensor), "of {:?} not all is held", tensor.numbers());
         let row = &mut numbers[p * Self::STRIDE..][..Self::STRIDE];
         row.iter_mut().zip(Self::PLACES).for_each(|(number, &place)| *number = tensor.numbers()[place]);
     }
@@ -128,7 +128,7 @@ impl<const D: usize, T: Components> Packed<D, T> {
     /// Adds a tensor for a further point, which must be zero where nothing is held.
     #[inline(always)]
     pub fn push(&mut self, tensor: T) {
-        debug_assert!(Self::tells_all(&tensor), "of {:?} not all is held", tensor.numbers());
+        debug_assert!(Self::sends_all(&tensor), "of {:?} not all is held", tensor.numbers());
         self.numbers.extend(Self::PLACES.iter().map(|&place| tensor.numbers()[place]));
     }
 

@@ -29,7 +29,7 @@ struct Step {
 }
 
 impl Broyden {
-    /// Tells how much of the last direction was taken: 1 for a full step.
+    /// Reports how much of the last direction was taken: 1 for a full step.
     pub fn took(&mut self, length: f64) {
         self.length = length;
         if let Some(last) = self.steps.last_mut() {

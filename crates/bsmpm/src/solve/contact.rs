@@ -31,16 +31,16 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
     nodes: &mut Nodes<D>,
-    (grips, points): (&mut StripAttachments<D>, &Points<D>),
+    (attachments, points): (&mut StripAttachments<D>, &Points<D>),
     guess: &[f64],
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
     counts: &mut Counts,
 ) -> Result<Found<K, D>, StepError> {
     let (faces, strips) = (model.boundary.has_contact(), model.boundary.has_strip_contact());
     if !faces && !strips && nodes.rigid.is_empty() {
-        return super::find(&Problem { model, shape, nodes, grips, points, halo }, guess, solver, counts);
+        return super::find(&Problem { model, shape, nodes, attachments, points, halo }, guess, solver, counts);
     }
-    grips.recall(guess);
+    attachments.recall(guess);
     let Criteria { energy, force, max_iterations } = model.criteria;
     let criteria = Criteria { energy: energy.max(ROUGH), force: force.max(ROUGH), max_iterations };
     let rough = Model { criteria, ..model.clone() };
@@ -48,7 +48,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     let most = if nodes.rigid.is_empty() { MOST } else { MOST_AT_BODIES };
     for pass in 0..most {
         let judged = if is_rough { &rough } else { model };
-        let problem = Problem { model: judged, shape, nodes, grips, points, halo };
+        let problem = Problem { model: judged, shape, nodes, attachments, points, halo };
         let found = match nodes.rigid.is_coupled() {
             true => super::find(&problem, &u, &mut Bordered::of(&problem, solver), counts),
             false => super::find(&problem, &u, solver, counts),
@@ -68,7 +68,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         history.extend(found.history.iter().copied());
         first_guess &= found.first_guess;
         let doubt = (DOUBT * judged.criteria.force * found.scale, model.grid.smallest_edge());
-        let mut corrected = if strips { grips.correct(&found.u, doubt.0, halo) } else { 0 };
+        let mut corrected = if strips { attachments.correct(&found.u, doubt.0, halo) } else { 0 };
         corrected += nodes.rigid.correct(&found.u, (doubt.0, pass), halo)?;
         nodes.contacts.first_energy = found.first_energy;
         if faces {

@@ -16,7 +16,7 @@ use crate::tensor::Vector;
 /// A first residual this much below the force tolerance needs no direction: |du_0 . f_0| would only be noise.
 const ALREADY: f64 = 1e-2;
 /// Forces this much below their tolerance are enough where no method leads on: the states of steps that meet both
-/// criteria have such forces (.01 to .07 of the tolerance in a wall's active wedge, .5 at most), so that none is
+/// criteria have such forces (0.01 to 0.07 of the tolerance in a wall's active wedge, 0.5 at most), so that none is
 /// balanced worse.
 const SETTLED: f64 = 1e-1;
 /// Iterations over which the rate of convergence is taken.
@@ -165,7 +165,7 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D
     }
     let mut du = du.to_vec();
     problem.nodes.extend(&problem.model.grid, &mut du, problem.halo);
-    let mut penalty = problem.grips.energy(&du);
+    let mut penalty = problem.attachments.energy(&du);
     penalty += &rigid.energy(&du, problem.halo);
     let penalty = problem.halo.total(&[penalty]);
     (work - penalty[0]).abs()
@@ -192,10 +192,10 @@ pub fn worst_nodes<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>
     let force = |node: usize| Vector::<D>::from_column_slice(&balance.f_oob[Nodal::<D>::of(node)]).norm();
     let mut nodes: Vec<usize> = problem.halo.owned().nodes().filter(|&node| force(node) > 0.0).collect();
     nodes.sort_by(|&a, &b| force(b).total_cmp(&force(a)));
-    let told = |node: usize| {
+    let worst = |node: usize| {
         let place = grid.node_at(node);
         let x = (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect();
         WorstNode { number: grid.number_of(node) as u64, x, force: force(node) }
     };
-    nodes.into_iter().take(WORST).map(told).collect()
+    nodes.into_iter().take(WORST).map(worst).collect()
 }

@@ -176,7 +176,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, v, &mut force);
         }
-        self.problem.grips.multiply(v, &mut force);
+        self.problem.attachments.multiply(v, &mut force);
         nodes.rigid.multiply(v, &mut force, halo);
         out.copy_from_slice(&halo.sum(&force));
         nodes.reduce(&mut [&mut *out], halo);

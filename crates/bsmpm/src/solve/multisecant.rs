@@ -45,7 +45,7 @@ impl Multisecant {
         Self { unknowns, secants: Vec::new(), products: Vec::new(), last: None }
     }
 
-    /// Turns the nodal w = K_0^-1 f into the direction du, and tells du . f: one reduction for everything.
+    /// Turns the nodal w = K_0^-1 f into the direction du, and reports du . f: one reduction for everything.
     pub fn correct(&mut self, nodal_w: &mut [f64], f: &[f64], halo: &dyn Halo) -> f64 {
         let (w, f) = (self.unknowns.packed(nodal_w), self.unknowns.packed(f));
         let dw = self.learn(&w, &f);
@@ -63,7 +63,7 @@ impl Multisecant {
         energy
     }
 
-    /// Tells how much of the last direction was taken: 1 for a full step.
+    /// Reports how much of the last direction was taken: 1 for a full step.
     pub fn took(&mut self, length: f64) {
         if let Some(last) = &mut self.last {
             last.s.iter_mut().for_each(|s| *s *= length);

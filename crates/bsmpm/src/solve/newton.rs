@@ -67,7 +67,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if iteration == MOST {
             break;
         }
-        let work = stability::tells(problem, &residual.balance).then_some(energy);
+        let work = stability::is_decisive(problem, &residual.balance).then_some(energy);
         let Some((next, found)) = search(problem, &u, &du, &residual, counts) else { break };
         stability::check(problem, convergence, (&du, work), &found.balance)?;
         (u, residual) = (next, found);

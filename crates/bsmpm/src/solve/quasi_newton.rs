@@ -103,7 +103,7 @@ impl Secants {
         Direction { du, energy, solved }
     }
 
-    /// Tells how much of the last direction was taken: 1 for a full step.
+    /// Reports how much of the last direction was taken: 1 for a full step.
     pub fn took(&mut self, length: f64) {
         match self {
             Self::Multisecant(secants) => secants.took(length),
@@ -177,7 +177,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             return Ok(Found::new(u, residual, convergence)); // (9)
         }
         // The direction's own energy is a sum of products with secants, whose round-off is another.
-        let work = stability::tells(problem, &residual.balance)
+        let work = stability::is_decisive(problem, &residual.balance)
             .then(|| dots(problem.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
         let of_water = convergence.water(&residual.balance).unwrap_or(0.0);
         if let Some(pores) = &problem.nodes.pores {

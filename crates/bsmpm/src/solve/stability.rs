@@ -16,18 +16,20 @@ const NEAR: f64 = 1e-3;
 
 /// Whether anything follows from the work of a direction that is taken at this state: not far from equilibrium, nor in
 /// dynamics, where inertia decides where an unstable body goes, nor without symmetry.
-pub fn tells<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -> bool {
-    let rubs = problem.model.boundary.supports.iter().any(|face| face.contact.is_some_and(|law| law.friction > 0.0));
+pub fn is_decisive<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -> bool {
+    let has_friction =
+        problem.model.boundary.supports.iter().any(|face| face.contact.is_some_and(|law| law.friction > 0.0));
     let strips = &problem.model.boundary.strips;
-    let rubs = rubs || strips.iter().any(|strip| strip.contact.is_some_and(|contact| contact.law.friction > 0.0));
-    let rubs = rubs || problem.nodes.rigid.rubs();
+    let has_friction =
+        has_friction || strips.iter().any(|strip| strip.contact.is_some_and(|contact| contact.law.friction > 0.0));
+    let has_friction = has_friction || problem.nodes.rigid.has_friction();
     let flows = problem.nodes.pores.is_some();
-    before.measure() < NEAR && problem.nodes.inertia.is_none() && !rubs && !flows && is_symmetric(problem.model)
+    before.measure() < NEAR && problem.nodes.inertia.is_none() && !has_friction && !flows && is_symmetric(problem.model)
 }
 
 /// Refuses a direction du (m, nodal; how much of it was taken changes no sign) near static equilibrium whose
-/// second-order work is negative beyond round-off: `work` is du . f_oob before it was taken, N m, where that [`tells`]
-/// anything; `after` are the forces then. Agreed by all ranks; one reduction.
+/// second-order work is negative beyond round-off: `work` is du . f_oob before it was taken, N m, where it
+/// [`is_decisive`]; `after` are the forces then. Agreed by all ranks; one reduction.
 pub fn check<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     convergence: &Convergence,

@@ -53,7 +53,7 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
     symmetry: Symmetry,
 ) -> Result<(), SolveError> {
     let nodes = problem.nodes;
-    problem.grips.assemble(solver);
+    problem.attachments.assemble(solver);
     nodes.rigid.assemble(solver);
     nodes.contacts.assemble(solver, problem.halo);
     if let Some(inertia) = &nodes.inertia {

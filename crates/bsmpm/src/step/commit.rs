@@ -4,7 +4,7 @@
 //! or filtered one under modified and consistent F-bar: the two differ, and the stress is the one in equilibrium.
 //!
 //! It is tau/J-bar, J-bar the dilation that the stress has felt: the product of the averaged ones of all steps and of
-//! what filters made of the elastic part. The point's own J = det F drifts away from that (the short footing's: .79 to
+//! what filters made of the elastic part. The point's own J = det F drifts away from that (the short footing's: 0.79 to
 //! 1.33), as nothing resists, so that tau/J lies outside of the yield surface that tau is on.
 
 use crate::error::StepError;

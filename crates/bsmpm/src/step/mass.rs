@@ -28,7 +28,7 @@ pub const SHARE: f64 = 0.95;
 /// Square of the part of a momentum, in the norm of the kinetic energy, that a solution may leave.
 const LEFT: f64 = 1e-24;
 
-/// Iterations that a solution may take: with the eigenvalues of [`SHARE`] each leaves .64 of the error at most, and 80
+/// Iterations that a solution may take: with the eigenvalues of [`SHARE`] each leaves 0.64 of the error at most, and 80
 /// reach 1e-12.
 const MOST: usize = 120;
 

@@ -352,7 +352,7 @@ impl<const D: usize> Nodes<D> {
         Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: weight, threshold: *threshold, halo }
     }
 
-    /// Counts what is told of the nodes, over all ranks.
+    /// Counts what is reported of the nodes, over all ranks.
     pub fn count(&mut self, halo: &dyn Halo) {
         let owned = halo.owned();
         let count = |marks: &mut dyn Iterator<Item = bool>| marks.filter(|&mark| mark).count() as f64;

@@ -17,7 +17,7 @@ pub struct Problem<'a, K, const D: usize> {
     /// step (2)
     pub nodes: &'a Nodes<D>,
     /// strips, attached to the nodes
-    pub grips: &'a StripAttachments<D>,
+    pub attachments: &'a StripAttachments<D>,
     /// state at t
     pub points: &'a Points<D>,
     /// the other ranks

@@ -1,4 +1,4 @@
-//! What a step tells of itself.
+//! What a step reports of itself.
 
 use crate::boundary::{ContactReport, RigidReport, StripReport};
 use crate::energy::{Flows, Turnover};

@@ -35,7 +35,8 @@ pub struct Balance {
     /// N  f_ext + strips and rigid bodies + dashpots + friction - f_int - M a - background (a: `Inertia::acting`), zero
     /// at components that are not free
     pub f_oob: Vec<f64>,
-    /// N  force of the supports on the body, zero at components that are neither prescribed nor rubbed nor damped
+    /// N  force of the supports on the body, zero at components that are neither prescribed nor loaded by friction nor
+    /// damped
     pub reaction: Vec<f64>,
     /// N  |f_oob|
     pub norm: f64,
@@ -177,7 +178,7 @@ impl Balance {
         let mut f_strips = Vec::new();
         if !problem.model.boundary.strips.is_empty() || !problem.nodes.rigid.is_empty() {
             let mut held = Contributions::none(&problem.model.grid, D, Vec::new());
-            problem.grips.add_forces(u, &mut held);
+            problem.attachments.add_forces(u, &mut held);
             problem.nodes.rigid.add_forces(u, &mut held, problem.halo);
             f_strips = problem.halo.sum(&held);
         }

@@ -1,5 +1,5 @@
 //! How water that flows is followed in time: by backward differences of second order on steps of any length, or by
-//! backward Euler where the step before tells nothing of this one.
+//! backward Euler where the step before says nothing of this one.
 //!
 //! `zeta - zeta^n - last (zeta^n - zeta^n-1) = now dt (what comes in under the pressure at the end)`, which is exact of
 //! a zeta that is a parabola of time (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, III.5).
@@ -8,7 +8,7 @@ use crate::model::{Model, Regime};
 use crate::points::Points;
 use crate::water::flow::{Course, Flow, Motion};
 
-/// A step over the one before it, above which that tells nothing: the differences are stable below 1 + sqrt 2, but what
+/// A step over the one before it, above which that says nothing: the differences are stable below 1 + sqrt 2, but what
 /// dies away goes beyond its end the further the nearer to it.
 pub const LONGEST: f64 = 1.6;
 
@@ -52,7 +52,7 @@ impl Differences {
     }
 }
 
-/// Whether what drives the flow turns sharply in a step: then the last one tells nothing of it.
+/// Whether what drives the flow turns sharply in a step: then the last one says nothing of it.
 fn turns<K, const D: usize>(model: &Model<K, D>, step: (f64, f64)) -> bool {
     let of_water = model
         .water
@@ -61,8 +61,8 @@ fn turns<K, const D: usize>(model: &Model<K, D>, step: (f64, f64)) -> bool {
     of_water || model.boundary.turns(step)
 }
 
-/// Whether the flow of a step tells of the next one's: not where pores fill, surfaces open and close, inertia makes
-/// waves, or nothing flows.
+/// Whether the flow of a step says anything about the next one's: not where pores fill, surfaces open and close,
+/// inertia makes waves, or nothing flows.
 pub fn is_smooth<K, const D: usize>(model: &Model<K, D>) -> bool {
     let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
     let flows = |flow: &Flow<D>| {
@@ -101,7 +101,7 @@ mod tests {
             (t, before, inward) = (t + dt, [dt, step], inward + step);
             assert!((inward - rate.integral((0.0, t))).abs() < 1e-14, "{t} {inward}");
         }
-        // Triangles and trapezia by hand, and .5 from the last row on.
+        // Triangles and trapezia by hand, and 0.5 from the last row on.
         assert!((rate.integral((0.0, 5.0)) - (1.5 + 0.1 - 0.475 + 0.5)).abs() < 1e-14);
     }
 }

@@ -20,8 +20,9 @@ use crate::water::flow::{Flow, Given, Motion};
 /// Conductance of a drain over that of the soil of a cell, k/(gamma_w h).
 ///
 /// With more of it a curved surface that cuts the cells asks more of the pressure than its functions have. Flow through
-/// a ring whose inner radius is 4, 8, 16 cells is off by .5, .02, .02 % with 1e2, by 5.7, 1.0, .4 % with 1e4, and by
-/// -1.7, -1.2, -.5 % with 1e1, where the drain itself resists.
+/// a ring whose inner radius is 4, 8, 16 cells is off by 0.5, 0.02, 0.02 % with 1e2, by 5.7, 1.0, 0.4 % with 1e4, and
+/// by
+/// -1.7, -1.2, -0.5 % with 1e1, where the drain itself resists.
 const CONDUCTANCE: f64 = 1e2;
 /// Parts of a cell by which ends of neighbours may lie apart.
 const ON: f64 = 1e-9;

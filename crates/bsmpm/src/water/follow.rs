@@ -2,7 +2,7 @@
 //! empty are far from balanced.
 //!
 //! A seepage face is a complementarity, whose derivative jumps with the points that are open: the matrix is assembled
-//! anew with those (a semismooth Newton method), and the secants, which are of the matrix before, start anew. What
+//! again with those (a semismooth Newton method), and the secants, which are of the matrix before, start again. What
 //! pores hold and let through under suction changes by orders of magnitude within a step: the first iterations follow
 //! it too, and go no further with a pressure at once than the matrix knows.
 
@@ -62,7 +62,7 @@ impl Follow {
         }
     }
 
-    /// Assembles the matrix anew at `x` where that is due by the `measure` of the water; whether it has. One reduction
+    /// Assembles the matrix again at `x` where that is due by the `measure` of the water; whether it has. One reduction
     /// where a seepage face is or pores may empty.
     pub fn up<K: Kinematics<D>, const D: usize>(
         &mut self,

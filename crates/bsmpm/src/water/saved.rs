@@ -1,4 +1,4 @@
-//! The converged water, saved into the points, and what a step tells of it.
+//! The converged water, saved into the points, and what a step reports of it.
 
 use crate::exact::Exact;
 use crate::grid::transfer::scalars;
@@ -16,8 +16,8 @@ use crate::water::flow::{DrainedFace, Flow};
 use crate::water::nodes::{Pores, face_functions};
 use crate::water::residual::Flowing;
 
-/// Part of a cell by which ground is off a drained face when it is told of: a column that had settled by .1 of a cell
-/// was 1 % short of its settlement, by .3 of a cell 4 %, and by one it settled no more.
+/// Part of a cell by which ground is off a drained face when it is reported: a column that had settled by 0.1 of a
+/// cell was 1 % short of its settlement, by 0.3 of a cell 4 %, and by one it settled no more.
 const OFF: f64 = 0.2;
 /// Cells from the face within which ground is at it: no row of points of a cell, (k + 1/2)/n, is just there.
 const NEAR: f64 = 0.6;
@@ -25,7 +25,7 @@ const NEAR: f64 = 0.6;
 /// The ground at a drained face of the grid, which does not go with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FaceReport {
-    /// points that lay within .6 of a cell of the face at the start
+    /// points that lay within 0.6 of a cell of the face at the start
     pub near: usize,
     /// those of them that have moved off it by more than a fifth of a cell
     pub off: usize,

@@ -59,8 +59,8 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let u: Vec<f64> = (0..model.grid.nodes() * 2).map(|c| 1e-3 * (c as f64).sin()).collect();
     let evaluate = || Residual::of(&pieces, &u).balance.norm;
     assert!(evaluate() > 0.0);

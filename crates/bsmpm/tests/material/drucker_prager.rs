@@ -60,7 +60,7 @@ fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
 }
 
 /// The cone passes through the edges of triaxial compression (outer) and extension (inner) of the pyramid with the same
-/// strength; where flow goes on in plane strain it has the part of the pyramid's that it tells.
+/// strength; where flow goes on in plane strain it has the part of the pyramid's that it reports.
 #[test]
 fn the_cone_meets_the_pyramid_where_it_is_said_to() {
     let (friction, compression, extension) = (30_f64, [-0.001, -0.001, -0.2], [0.0, -0.2, -0.2]);

@@ -19,7 +19,7 @@ fn mobilised_strength_is_that_of_the_yield_function() {
     let mises = Material::VonMises(VonMises::new(Elastic { young: 1e3, poisson: 0.3 }, 20.0, 0.0));
     close(mises.mobilised([5.0, 0.0, 0.0], &[0.0]), 0.25);
     assert!(Material::is_yielding(mises.mobilised([20.0, 0.0, 0.0], &[0.0])) && !Material::is_yielding(0.99));
-    // Nothing of pressure alone; what is beyond is told so, to an end.
+    // Nothing of pressure alone; what is beyond is reported, to an end.
     assert_eq!(mises.mobilised([-7.0; 3], &[0.0]), 0.0);
     close(mises.mobilised([60.0, 0.0, 0.0], &[0.0]), 3.0);
     assert_eq!(mohr_coulomb(1e3, 0.3, 30.0, 0.0, 1.0).mobilised([9.0; 3], &[]), 16.0);

@@ -354,7 +354,7 @@ fn several_ranks_make_the_same_of_drains_to_the_bit() {
 }
 
 #[test]
-fn a_surface_that_is_told_to_lie_beyond_a_face_is_on_it_where_that_holds_the_ground() {
+fn a_surface_that_is_found_beyond_a_face_is_on_it_where_that_holds_the_ground() {
     let mut scene = scene(2, PermeabilityLaw::Constant, slope(), Given::StillWater);
     let top = scene.model.grid.axes()[1].length();
     let above = |beyond: f64| at(1.0, top + beyond);

@@ -104,8 +104,8 @@ fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_genera
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let residual = Residual::of(&problem, &vec![0.0; nodes.free.len()]);
     let derivative = Linearised::at(&problem, &residual);
     let mut matrix = Dense::new(&model.grid);
@@ -148,8 +148,8 @@ fn condition(scene: &Scene<PlaneStrain, 2>) -> f64 {
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let mut matrix = Dense::new(&model.grid);
     stiffness::assemble(&problem, None, &mut matrix).expect("a matrix");
     matrix.conditions()[0]

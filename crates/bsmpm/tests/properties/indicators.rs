@@ -14,7 +14,7 @@ use bsmpm::step::nodes::Nodes;
 use bsmpm::step::smooth;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 
-/// Cells of .5 m, 6 along each axis, of which `cells` hold 2^D points each.
+/// Cells of 0.5 m, 6 along each axis, of which `cells` hold 2^D points each.
 fn block<K: Kinematics<D>, const D: usize>(order: usize, cells: std::ops::Range<usize>) -> Scene<K, D> {
     let axes = std::array::from_fn(|_| axis(0.5, 6, order));
     let cells = std::array::from_fn(|_| cells.clone());
@@ -154,7 +154,7 @@ fn compression_is_that_of_each_material() {
     let mut scene = block::<PlaneStrain, 2>(2, 0..2);
     let halo = scene.halo();
     assert_eq!(compression(&scene.points, 2, &halo), [0.0, 0.0]);
-    // Half of the points are of another material and shrink to .8; one of the first material grows to twice its area.
+    // Half of the points are of another material and shrink to 0.8; one of the first material grows to twice its area.
     for p in 0..scene.points.len() {
         scene.points.material[p] = u16::from(p % 2 == 1);
         let stretch = if p % 2 == 1 { 0.8 } else { 1.0 };
@@ -173,7 +173,7 @@ fn the_noise_of_the_pressure_has_no_unit() {
         relative_pressure_noise(&scene.model.grid, &scene.points, (Weighting::Mass, 0.0), &scene.halo()).unwrap()
     };
     assert_eq!(noise(&scene).about_plane, 0.0);
-    // A checkerboard of points: 1 +- .5, times any stress.
+    // A checkerboard of points: 1 +- 0.5, times any stress.
     for unit in [1.0, 1e6] {
         for p in 0..scene.points.len() {
             let place = (scene.points.x[p] / 0.25).map(|x| x as i64);

@@ -86,7 +86,7 @@ fn disc() -> RigidBody {
     }
 }
 
-/// What moves as prescribed in a step of .1 from t = 1 on, after one of `last_dt`.
+/// What moves as prescribed in a step of 0.1 from t = 1 on, after one of `last_dt`.
 fn is_steady(boundary: &Boundary<2>, last_dt: f64) -> bool {
     boundary.moves_steadily(1.0, last_dt, 0.1)
 }

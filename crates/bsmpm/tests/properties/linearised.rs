@@ -49,8 +49,9 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
-    let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments =
+        StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {
         let values = random.array(nodes.free.len());
@@ -183,9 +184,9 @@ fn strips_are_in_the_product() {
     assert!(free <= 1e-6 && held <= 1e-6, "{free:e} {held:e}");
 }
 
-/// Sand that gapes, some of it closing so far that it resists again.
+/// Sand with gaps, some of it closing so far that it resists again.
 #[test]
-fn what_gapes_is_in_the_product() {
+fn what_opens_is_in_the_product() {
     let sand = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.0, 0.0);
     for method in METHODS {
         let mut scene = loaded::<PlaneStrain, 2>(method, Regime::Dynamic);
@@ -206,7 +207,7 @@ fn what_gapes_is_in_the_product() {
 }
 
 /// Sand, or stiff clay far from yield, strained by about `size`: what is left of the force of a small step v, as large
-/// as the strain, once the product is taken off, |f(u + s v) - f(u) + s K v| / |s K v| for s = .02 and .01; and how
+/// as the strain, once the product is taken off, |f(u + s v) - f(u) + s K v| / |s K v| for s = 0.02 and 0.01; and how
 /// many points change their region in it.
 fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let mut scene = loaded::<PlaneStrain, 2>(Stabilisation::FBar, Regime::QuasiStatic);
@@ -220,8 +221,8 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let mut free =
         || -> Vec<f64> { nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect() };
     let (u, v) = (free(), free());
@@ -251,12 +252,12 @@ fn the_curvature_of_sand_grows_as_its_stress_falls() {
             let (left, changed) = curvature(cohesion, size);
             println!("c = {cohesion}, strain {size:e}: left {left:?}, {changed} points change their region");
             assert_eq!(changed, 0, "no kink is crossed");
-            assert!((left[0] / left[1] - 2.0).abs() <= 0.05, "what is left falls with s^2"); // measured .014 at most
+            assert!((left[0] / left[1] - 2.0).abs() <= 0.05, "what is left falls with s^2"); // measured 0.014 at most
             left[0]
         })
     });
     // In strains of its own size sand is as curved at any stress; stiff clay has the curvature of the geometry alone.
-    assert!((sand[0] / sand[1] - 1.0).abs() <= 0.03, "{sand:?}"); // measured .002
-    assert!((clay[0] / clay[1] / 100.0 - 1.0).abs() <= 0.03, "{clay:?}"); // measured .0006
+    assert!((sand[0] / sand[1] - 1.0).abs() <= 0.03, "{sand:?}"); // measured 0.002
+    assert!((clay[0] / clay[1] / 100.0 - 1.0).abs() <= 0.03, "{clay:?}"); // measured 0.0006
     assert!(sand[1] >= 1e3 * clay[1]); // measured 4.0e3
 }

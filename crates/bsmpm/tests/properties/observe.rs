@@ -63,7 +63,7 @@ fn the_projected_pressure_keeps_what_is_uniform_and_damps_what_alternates() {
         alternating = alternating.max(pressure.abs());
     }
     println!("left of 1: {alternating}");
-    // At a corner .75 x .75 of a function whose own mean is 1/4: .141; elsewhere nothing.
+    // At a corner 0.75 x 0.75 of a function whose own mean is 1/4: 0.141; elsewhere nothing.
     assert!(alternating <= 0.15 && signs.contains(&1.0) && signs.contains(&-1.0));
 }
 

@@ -7,14 +7,14 @@ use bsmpm::model::Regime;
 use bsmpm::observe::{displacement, front};
 use bsmpm::tensor::{Tensor, Vector};
 
-/// Cells of .5 m, the first four of the base row full, the first two of the next.
+/// Cells of 0.5 m, the first four of the base row full, the first two of the next.
 fn step() -> Scene<PlaneStrain, 2> {
     Scene::new([axis(0.5, 12, 2), axis(0.5, 4, 2)], hencky(1.0, 0.3), Regime::QuasiStatic)
         .body([0..4, 0..1], 2, 3.0, |x| x * 0.0)
         .body([0..2, 1..2], 2, 3.0, |x| x * 0.0)
 }
 
-/// The farthest point of a cell that is half full went back by a spacing of points (.25 m) whenever a column of points
+/// The farthest point of a cell that is half full went back by a spacing of points (0.25 m) whenever a column of points
 /// came into the next cell.
 #[test]
 fn the_front_of_a_body_that_slides_moves_as_the_body_does() {

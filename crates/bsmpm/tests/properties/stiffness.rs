@@ -65,8 +65,8 @@ fn products<K: Kinematics<D>, const D: usize>(
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {
         nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect()

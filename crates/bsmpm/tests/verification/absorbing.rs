@@ -171,12 +171,12 @@ fn late(n: usize) -> f64 {
 #[test]
 fn a_base_that_absorbs_lets_the_motion_of_the_outcrop_in() {
     let [coarse, fine] = [10, 20].map(late);
-    // .024 and .0094; .0037 in 40 cells.
+    // 0.024 and 0.0094; 0.0037 in 40 cells.
     assert!(coarse < 0.026 && fine < 0.0102 && coarse > 2.2 * fine, "{coarse}, {fine}");
 }
 
 /// Velocities at `places`, m from the middle, step after step, of a square of `cells` of 1 m in whose middle a force
-/// acts for .08 s, or of a cylinder as high and wide; its faces absorb or are fixed.
+/// acts for 0.08 s, or of a cylinder as high and wide; its faces absorb or are fixed.
 fn shot<K: Kinematics<2>>(cells: usize, absorbs: bool, places: &[[f64; 2]]) -> Vec<Vec<Vector<2>>> {
     let face = if absorbs { Support::absorbing } else { Support::fixed };
     let is_round = K::weight(&Vector::zeros()) == 0.0;

@@ -104,7 +104,7 @@ fn inflated(cells: usize, pressure: f64) -> (f64, f64) {
 }
 
 /// Equilibrium of the same tube along the radius, integrated numerically with a tolerance of 1e-11: its outermost
-/// points are moved so far by .1 E, and it bears no more than .148913 E.
+/// points are moved so far by 0.1 E, and it bears no more than 0.148913 E.
 #[test]
 fn a_tube_bears_its_limit_pressure_and_no_more() {
     for (cells, exact) in [(4, 0.203_785), (8, 0.202_904)] {
@@ -189,7 +189,7 @@ fn volumes_of_cells_and_functions_are_those_of_the_sector() {
         if order == 1 {
             continue; // functions that are constant in a cell have no Greville place
         }
-        // sum_I r_I int N_I = int r dV, r_I the Greville places: the moment tells a wrong mean of a function.
+        // sum_I r_I int N_I = int r dV, r_I the Greville places: the moment shows a wrong mean of a function.
         let r = |node: usize| grid.axes()[0].lowered_greville(grid.node_at(node)[0]);
         let moment: f64 = (0..grid.nodes()).map(|node| r(node) * grid.lowered_volume::<Axisymmetric>(node)).sum();
         let exact = grid.axes()[0].length().powi(3) / 3.0 * 1.5;
@@ -233,7 +233,7 @@ fn section_forces_are_those_of_a_column_and_of_a_clamped_plate() {
         let off = [found.normal / (clamped * r), found.shear[0] / (0.5 * weight * r * r) - 1.0];
         let bent = (found.bending[0] / r - moment) / clamped;
         println!("plate r {r}: N {:.1e}, Q {:.1e}, M {bent:.1e} of that at the rim", off[0], off[1]);
-        // A cut is spread over a cell, and so is the weight within it: .17 (h/r)^2 at lines of cells, .41 at 2.6 m.
+        // A cut is spread over a cell, and so is the weight within it: 0.17 (h/r)^2 at lines of cells, 0.41 at 2.6 m.
         assert!(off[0].abs() < 1e-4 && off[1].abs() < 0.5 * (h / r).powi(2) + 2e-4 && bent.abs() < 4e-3);
     }
 }

@@ -64,28 +64,28 @@ fn without_smoothing_the_bar_keeps_its_energy_and_period() {
     for method in METHODS.into_iter().filter(|&method| method != Stabilisation::ModifiedFBar) {
         let (left, period) = after_five_periods(method, 80);
         println!("{method:?}: energy {left:.5}, period {period:.4}");
-        assert!((left - 0.9988).abs() <= 5e-4); // measured .99880, .99878
+        assert!((left - 0.9988).abs() <= 5e-4); // measured 0.99880, 0.99878
         assert!((period / PERIOD - 1.0).abs() <= 0.01); // measured 10.021, 10.025
     }
 }
 
 #[test]
 fn averaging_the_elastic_strain_every_step_takes_energy_as_documented() {
-    // method.md 3: .858, .549 with 20 and 80 steps a period: the smoothing belongs to the step count.
+    // method.md 3: 0.858, 0.549 with 20 and 80 steps a period: the smoothing belongs to the step count.
     for (steps, documented) in [(20, 0.858), (80, 0.549)] {
         let (left, period) = after_five_periods(Stabilisation::ModifiedFBar, steps);
         println!("ModifiedFBar, {steps} steps a period: energy {left:.4}, period {period:.4}");
-        assert!((left - documented).abs() <= 0.002); // measured .8584, .5489
+        assert!((left - documented).abs() <= 0.002); // measured 0.8584, 0.5489
     }
 }
 
 #[test]
 fn shorter_steps_keep_more_energy_without_smoothing() {
-    // method.md 3: .9955, .9988, .9997 with 20, 80, 320 steps a period.
+    // method.md 3: 0.9955, 0.9988, 0.9997 with 20, 80, 320 steps a period.
     for (steps, documented) in [(20, 0.9955), (160, 0.9994)] {
         let (left, _) = after_five_periods(Stabilisation::None, steps);
         println!("{steps} steps a period: energy {left:.5}");
-        assert!((left - documented).abs() <= 5e-4); // measured .9955, .9994
+        assert!((left - documented).abs() <= 5e-4); // measured 0.9955, 0.9994
     }
 }
 
@@ -94,7 +94,7 @@ fn consistent_f_bar_keeps_the_energy_however_many_steps_there_are() {
     for steps in [80, 320] {
         let (left, _) = after_five_periods(Stabilisation::ConsistentFBar, steps);
         println!("ConsistentFBar, {steps} steps a period: energy {left:.5}");
-        assert!(left >= 0.995); // measured .99878, .99964
+        assert!(left >= 0.995); // measured 0.99878, 0.99964
     }
 }
 

@@ -14,7 +14,7 @@ use bsmpm::tensor::Vector;
 
 const COHESION: f64 = 1.0;
 
-/// Clay, whose nu is .495, into which a smooth strip is pushed by half its half width, 1 m.
+/// Clay, whose nu is 0.495, into which a smooth strip is pushed by half its half width, 1 m.
 fn pressed(method: Stabilisation) -> Points<2> {
     let clay = MohrCoulomb::new(Elastic { young: 100.0, poisson: 0.495 }, 0.0, 0.0, COHESION);
     let axes = [axis(0.5, 8, 2), axis(0.5, 10, 2)];

@@ -8,7 +8,7 @@ use bsmpm::stabilisation::Stabilisation;
 
 /// A column of height 1, density 1 and oedometric modulus 1, one cell wide: gravity is S = rho0 g l0 / M.
 ///
-/// nu = .3, but 0 for cubic splines: three points across under-integrate their one cell, whose inner nodes lateral
+/// nu = 0.3, but 0 for cubic splines: three points across under-integrate their one cell, whose inner nodes lateral
 /// stress would push for no reason (the error then stalls at 1.5 %).
 fn column<K: Kinematics<D>, const D: usize>(order: usize, cells: usize, S: f64, steps: usize) -> Scene<K, D> {
     let (h, poisson) = (1.0 / cells as f64, if order == 3 { 0.0 } else { 0.3 });
@@ -101,7 +101,7 @@ fn the_same_column_in_three_dimensions_has_the_same_error() {
 
 #[test]
 fn large_strain_stress_stalls_with_linear_splines_ten_times_above_quadratic_ones() {
-    // method.md 9: shortened by 24 %, q = 1 stalls at 6-12 %, q = 2 has .26-.53 % left (point quadrature).
+    // method.md 9: shortened by 24 %, q = 1 stalls at 6-12 %, q = 2 has 0.26-.53 % left (point quadrature).
     let error = |q, cells| {
         let (scene, _) = column::<PlaneStrain, 2>(q, cells, 0.8, 20).solved(1.0, 20.0);
         let [mean, square] = scene.stress_error(0.8);
@@ -132,7 +132,7 @@ fn heights_of_the_hencky_column_agree_with_lamberts_function() {
 fn the_base_carries_the_columns_weight_at_any_strain_and_any_time_of_the_ramp() {
     let (_, steps) = column::<PlaneStrain, 2>(2, 10, 1.0, 10).solved(1.0, 12.0);
     for step in &steps {
-        let weight = 0.1 * (step.t / 10.0).min(1.0); // one cell of .1 m wide
+        let weight = 0.1 * (step.t / 10.0).min(1.0); // one cell of 0.1 m wide
         assert!((step.report.reactions[2][1] / weight - 1.0).abs() <= 1e-9);
     }
 }
@@ -162,7 +162,7 @@ fn stress_of_a_bar_compressed_to_half_falls_with_the_cells_where_volumes_are_fit
     for (points, coarse, fine, order) in COMPRESSED {
         let [[own, own_fine], [fitted, fitted_fine]] =
             [false, true].map(|fitted| [64, 256].map(|cells| compressed(cells, points, fitted)));
-        assert!(own_fine >= 0.8 * own, "points alone stall"); // measured .98, .93
+        assert!(own_fine >= 0.8 * own, "points alone stall"); // measured 0.98, 0.93
         assert!(fitted <= coarse && fitted_fine <= fine);
         assert!((fitted / fitted_fine).log2() / 2.0 >= order);
     }

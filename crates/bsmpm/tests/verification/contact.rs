@@ -20,7 +20,7 @@ const fn rough(friction: f64) -> Contact {
     Contact { friction, lifts: true }
 }
 
-/// A block of 1 x .5 m, of cells of 1/`n` m, on a base that is inclined by `slope` = tan(theta).
+/// A block of 1 x 0.5 m, of cells of 1/`n` m, on a base that is inclined by `slope` = tan(theta).
 fn block(n: usize, slope: f64, law: Contact, regime: Regime) -> Scene<PlaneStrain, 2> {
     let h = 1.0 / n as f64;
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, 3 * n, 2), axis(h, n, 2)], hencky(1e7, 0.3), regime)
@@ -68,7 +68,7 @@ fn arrives(mut scene: Scene<PlaneStrain, 2>, dt: f64, end: f64) -> bool {
     std::iter::from_fn(&mut step).all(|found| found.is_ok())
 }
 
-/// Way and velocity under gravity that grows over the ramp, at .5 s, over those of a rigid block, less 1.
+/// Way and velocity under gravity that grows over the ramp, at 0.5 s, over those of a rigid block, less 1.
 fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize) {
     const END: f64 = 0.5;
     let theta = 0.5_f64.atan();
@@ -86,8 +86,8 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
     let way = mean(&scene.points, |p| scene.points.u[p][0]);
     let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
     assert!(books.closure(now).abs() < 1e-6 * now.kinetic, "the books close: {:.1e}", books.closure(now));
-    let rubbed = friction * theta.cos() * weight(&scene) * way;
-    assert!((dissipated / rubbed - 1.0).abs() < 0.01, "{dissipated} of {rubbed} J");
+    let friction_work = friction * theta.cos() * weight(&scene) * way;
+    assert!((dissipated / friction_work - 1.0).abs() < 0.01, "{dissipated} of {friction_work} J");
     let rigid = [0.5 * (END - RAMP).powi(2) + 0.5 * RAMP * (END - RAMP) + RAMP * RAMP / 6.0, END - 0.5 * RAMP];
     (way / (a * rigid[0]) - 1.0, velocity(&scene.points) / (a * rigid[1]) - 1.0, iterations)
 }
@@ -99,7 +99,7 @@ fn a_block_slides_down_as_coulomb_says() {
     let order = ((coarse.0 - middle.0) / (middle.0 - fine.0)).log2();
     let cells = slid(8, 0.01, 0.3, Nonlinear::Auto);
     println!("way {coarse:?} {middle:?} {fine:?}, order {order:.2}; cells half as large {cells:?}");
-    // measured .00690, .00360, .00220, order 1.24; velocity 5e-5; cells half as large .00202
+    // measured 0.00690, 0.00360, 0.00220, order 1.24; velocity 5e-5; cells half as large 0.00202
     assert!(coarse.0 < 0.01 && (0.9..1.6).contains(&order) && fine.0 < 0.003 && cells.0 < 0.003);
     assert!([coarse, middle, fine, cells].iter().all(|(_, velocity, _)| velocity.abs() < 2e-3));
 }
@@ -176,7 +176,7 @@ fn the_faces_are_alike() {
     assert!((ways[0][0] - ways[1][0]).abs() < 1e-7 && (ways[0][1] + ways[1][1]).abs() < 1e-7, "{ways:?}");
 }
 
-/// A bar of 1 m, of cells of 1/`n` m, meets a wall from .2 m with 1 m/s. Its impulse over the exact one; its time at
+/// A bar of 1 m, of cells of 1/`n` m, meets a wall from 0.2 m with 1 m/s. Its impulse over the exact one; its time at
 /// the wall over that of the wave there and back; its energy after over that before.
 fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
     let (h, c) = (1.0 / n as f64, (1e6_f64 / 1000.0).sqrt());
@@ -212,7 +212,7 @@ fn a_bar_bounces() {
     for (mass, [coarse, fine]) in [(MassMatrix::Lumped, [0.07, 0.042]), (MassMatrix::Consistent, [0.032, 0.022])] {
         let [a, b] = [10, 20].map(|n| bounced(n, mass));
         println!("{mass:?}: {a:.4?} {b:.4?}");
-        // measured: lumped .930, .958 (n = 40: .974), energy .874, .929; consistent .969, .978, .918, .955
+        // measured: lumped 0.930, 0.958 (n = 40: 0.974), energy 0.874, 0.929; consistent 0.969, 0.978, 0.918, 0.955
         assert!(1.0 - a[0] < coarse && 1.0 - b[0] < fine && b[2] > a[2] && b[2] > 0.9);
         assert!((a[1] - 1.0).abs() < 0.06 && (b[1] - 1.0).abs() < 0.03);
     }

@@ -276,7 +276,7 @@ fn what_flows_is_not_damped() {
         let stress = |k: usize| (0..scene.points.len()).map(|p| scene.points.sigma.at(p).0[k]).sum::<f64>();
         [stress(3), stress(0) + stress(1) + stress(2)].map(|sum| sum / scene.points.len() as f64)
     };
-    // 38.5 x .05 x 1 Pa of viscous stress by the rate of all strain, ten times the strength.
+    // 38.5 x 0.05 x 1 Pa of viscous stress by the rate of all strain, ten times the strength.
     let [plain, damped] = [0.0, 0.05].map(shear);
     println!("{plain:?} {damped:?}");
     assert!((damped[0] / plain[0] - 1.0).abs() <= 0.02, "{plain:?} {damped:?}");
@@ -306,7 +306,7 @@ fn what_smoothing_takes_is_not_damped() {
                 let taken = 0.5 * points.smoothing_of(p).full().determinant().ln();
                 let dilation = 0.5 * points.b_e.at(p).full().determinant().ln() - taken;
                 let jacobian = points.F.at(p).determinant() * points.dilation_of(p);
-                // The dilation that the stress has felt tells of smoothing as well, which came after the stress.
+                // The dilation that the stress has felt shows smoothing as well, which came after the stress.
                 let mean = points.sigma.at(p).full().trace() / 3.0 * jacobian / taken.exp();
                 let rate = (dilation - before.insert(points.id[p], dilation).unwrap_or(0.0)) / accepted.dt;
                 off = off.max((mean - bulk * (dilation + TIME * rate)).abs());

@@ -41,14 +41,14 @@ fn rebound(method: Stabilisation, steps: usize) -> f64 {
 
 #[test]
 fn discs_part_as_fast_with_short_steps_as_with_long_ones_unless_every_step_smooths() {
-    // method.md 3: none .85/.89, f-bar .76/.80, modified -.02 (they stick), consistent .77/.80.
+    // method.md 3: none 0.85/.89, f-bar 0.76/.80, modified -0.02 (they stick), consistent 0.77/.80.
     let [f_bar, consistent, modified] =
         [Stabilisation::FBar, Stabilisation::ConsistentFBar, Stabilisation::ModifiedFBar].map(|method| {
             let found = [60, 240].map(|steps| rebound(method, steps));
             println!("{method:?}: {found:.3?}");
             found
         });
-    assert!((consistent[0] - consistent[1]).abs() <= 0.05); // measured .799, .822
+    assert!((consistent[0] - consistent[1]).abs() <= 0.05); // measured 0.799, 0.822
     assert!(consistent.iter().zip(f_bar).all(|(found, f_bar)| (found - f_bar).abs() <= 0.03));
-    assert!(modified[1] <= 0.1); // measured -.036
+    assert!(modified[1] <= 0.1); // measured -0.036
 }

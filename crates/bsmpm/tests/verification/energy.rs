@@ -1,4 +1,4 @@
-//! Energy: the books close to the iteration's tolerance, every part tells what it is named after, and known energies
+//! Energy: the books close to the iteration's tolerance, every part says what it is named after, and known energies
 //! are found.
 
 use super::bar::{PERIOD, bar};
@@ -99,7 +99,7 @@ fn the_bars_books_close_and_say_where_its_energy_went() {
         assert_eq!((flows.external, flows.plastic, flows.background, flows.penalty), (0.0, 0.0, 0.0, 0.0));
         assert!((left + flows.numerical() / start - 1.0).abs() <= 1e-10);
         match method {
-            // .549 of the energy is left (method.md 3), and smoothing has taken it.
+            // 0.549 of the energy is left (method.md 3), and smoothing has taken it.
             Stabilisation::ModifiedFBar => assert!((flows.smoothing / start - 0.44).abs() <= 0.01),
             _ => assert_eq!(flows.smoothing, 0.0),
         }
@@ -133,7 +133,7 @@ fn numerical_damping_is_a_loss_of_the_integration() {
     }
 }
 
-/// A column of dry soil, 2 x 1 m of .25 m cells, that collapses on a rough base beside a smooth wall.
+/// A column of dry soil, 2 x 1 m of 0.25 m cells, that collapses on a rough base beside a smooth wall.
 fn collapse(method: Stabilisation, separation: Separation) -> Scene<PlaneStrain, 2> {
     let soil = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.3 }, 0.4, 0.0, 0.0).separating(separation);
     Scene::new([axis(0.25, 16, 2), axis(0.25, 6, 2)], Material::MohrCoulomb(soil), Regime::Dynamic)
@@ -212,7 +212,7 @@ fn the_books_close_with_consistent_mass() {
     }
 }
 
-/// A block of Tresca soil, .25 m cells, into which a smooth strip is pressed.
+/// A block of Tresca soil, 0.25 m cells, into which a smooth strip is pressed.
 fn footing(method: Stabilisation) -> Scene<PlaneStrain, 2> {
     let clay = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.4 }, 0.0, 0.0, 1e3);
     let mut scene = Scene::new([axis(0.25, 6, 2), axis(0.25, 6, 2)], Material::MohrCoulomb(clay), Regime::QuasiStatic)
@@ -275,7 +275,7 @@ fn a_load_that_grows_stores_its_work_and_one_at_once_twice_as_much_as_is_stored(
 
 #[test]
 fn a_face_that_moves_does_the_work_of_its_reaction() {
-    // From l = 1 to .9 in one step: W = M ln(l)^2 / 2, and the reaction M ln(l) / l at the end of the step does the
+    // From l = 1 to 0.9 in one step: W = M ln(l)^2 / 2, and the reaction M ln(l) / l at the end of the step does the
     // work.
     fn pressed<K: Kinematics<D>, const D: usize>() -> (f64, f64) {
         let mut pushed = Support::roller(D - 1, true);

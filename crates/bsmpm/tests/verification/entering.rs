@@ -58,8 +58,8 @@ fn changes(background: Option<Background>) -> [f64; 2] {
 
 #[test]
 fn a_body_whose_edge_enters_a_cell_by_next_to_nothing_has_the_same_stress_inside() {
-    // Without a background the farthest nodes are dropped below 1e-7 h and are unknowns above: the stress jumps by .6 %
-    // there. What is left with one is the points' quadrature; 1e-1 E holds the edge cells too much (2.2e-2).
+    // Without a background the farthest nodes are dropped below 1e-7 h and are unknowns above: the stress jumps by 0.6
+    // % there. What is left with one is the points' quadrature; 1e-1 E holds the edge cells too much (2.2e-2).
     for (name, background, bound) in [
         ("no background", None, 0.0125), // measured 9.7e-3, 1.07e-2
         ("background 1e-4", Some(Background { coefficient: 1e-4 }), 0.01), // measured 6.6e-3, 5.2e-3
@@ -76,9 +76,9 @@ fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let (model, points, halo) = (&scene.model, &scene.points, &scene.halo());
     let shape = Shape::at(&model.grid, points).expect("points inside");
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), halo).expect("loads on material");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
     let mut stiffness = Dense::new(&model.grid);
-    let scene = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo };
+    let scene = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo };
     stiffness::assemble(&scene, None, &mut stiffness).expect("a matrix");
     stiffness.conditions()
 }

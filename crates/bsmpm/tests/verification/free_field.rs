@@ -17,7 +17,7 @@ const SOFT: f64 = 4e7;
 const STIFF: f64 = 1e8;
 const POISSON: f64 = 0.25;
 
-/// Ground of `wide` cells of the edge `h`, m, 10 m deep, soft in its upper 6 m, that a pulse of .15 s of acceleration
+/// Ground of `wide` cells of the edge `h`, m, 10 m deep, soft in its upper 6 m, that a pulse of 0.15 s of acceleration
 /// along x, and of a part of it `along_y`, shakes at a base that is to be held; nothing at its sides yet.
 fn ground((wide, h): (usize, f64), fastest: f64, along_y: f64) -> Scene<PlaneStrain, 2> {
     let high = (10.0 / h).round() as usize;
@@ -117,7 +117,7 @@ fn off_amplification(h: f64) -> [f64; 3] {
 fn layers_amplify_as_waves_in_them_do() {
     let [coarse, fine] = [1.0, 0.5].map(off_amplification);
     for (k, [of_coarse, of_fine]) in [[0.002, 0.007], [0.025, 0.014], [0.05, 0.018]].into_iter().enumerate() {
-        // .0013 and .0061, -.0218 and -.0122, .0444 and .0155.
+        // 0.0013 and 0.0061, -0.0218 and -0.0122, 0.0444 and 0.0155.
         assert!(coarse[k].abs() < of_coarse && fine[k].abs() < of_fine, "{k}: {coarse:?}, {fine:?}");
     }
 }
@@ -155,6 +155,6 @@ fn what_a_block_scatters_leaves_through_the_sides() {
         };
         found.iter().zip(&right).map(off).fold(0.0, f64::max) / largest
     });
-    // 1.68, .845, .0656.
+    // 1.68, 0.845, 0.0656.
     assert!(wrong[0] > 1.5 && wrong[1] > 0.7 && wrong[2] < 0.075, "{wrong:?}");
 }

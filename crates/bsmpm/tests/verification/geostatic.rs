@@ -39,7 +39,7 @@ fn elastic_start<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
     let (after, steps) = scene.clone().solved(1.0, 1.0);
     let moved = after.points.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
     println!("{D}-D {method:?}: unbalance {:.1e}, stress off by {off:.1e} of 80, moved {moved:.1e} m", found.force);
-    assert!(found.force <= 1e-8 && found.yielding == 0 && off <= 1.03); // 1.3 times the measured .79 of 80
+    assert!(found.force <= 1e-8 && found.yielding == 0 && off <= 1.03); // 1.3 times the measured 0.79 of 80
     assert!(moved <= 1e-7 && steps.len() == 1);
 }
 
@@ -94,7 +94,7 @@ fn a_state_beyond_yield_is_counted() {
     assert_eq!(found.yielding, scene.points.len() as u64 / 2);
 }
 
-/// Elastic gravity gives K0 = nu/(1 - nu) = .43, and active pressure is (1 - sin phi)/(1 + sin phi) = .55 of the
+/// Elastic gravity gives K0 = nu/(1 - nu) = 0.43, and active pressure is (1 - sin phi)/(1 + sin phi) = 0.55 of the
 /// vertical stress: all ground is beyond yield, and settles on it.
 fn settled<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
     let friction = 0.3_f64;

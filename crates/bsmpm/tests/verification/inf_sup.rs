@@ -56,7 +56,7 @@ fn constant(method: Stabilisation, grid: (usize, usize)) -> (f64, usize) {
     let left = lower.solve_lower_triangular(&dilation).expect("regular");
     let both = lower.solve_lower_triangular(&left.transpose()).expect("regular");
     let values = (&both + both.transpose()).scale(0.5).symmetric_eigenvalues();
-    // Squares of constants down to .003; what round-off leaves of 0 is below 1e-13.
+    // Squares of constants down to 0.003; what round-off leaves of 0 is below 1e-13.
     let pressures = values.iter().copied().filter(|value| *value > 1e-5);
     let (least, count) = pressures.fold((f64::INFINITY, 0), |(least, count), value| (value.min(least), count + 1));
     println!("{method:?}, order {}, {} cells: beta = {:.4} of {count}", grid.0, grid.1, least.sqrt());
@@ -70,7 +70,7 @@ fn over_pairs_of_cells_it_does_not_depend_on_the_size_of_cells() {
         assert_eq!(count, (cells / 2 + 1).pow(2) - 1, "all pressures but the constant one");
         beta
     });
-    assert!(betas[0] >= 0.22 && betas.is_sorted(), "{betas:?}"); // measured .228 .258 .270
+    assert!(betas[0] >= 0.22 && betas.is_sorted(), "{betas:?}"); // measured 0.228 0.258 0.270
 }
 
 /// What is known to be: with the cells, the constant falls, so that pressures have modes that nothing holds.
@@ -78,5 +78,5 @@ fn over_pairs_of_cells_it_does_not_depend_on_the_size_of_cells() {
 fn over_cells_it_falls_with_their_size() {
     let betas = [4, 8, 16].map(|cells| constant(Stabilisation::ConsistentFBar, (2, cells)).0);
     assert!(betas[1] <= 0.75 * betas[0] && betas[2] <= 0.7 * betas[1], "{betas:?}");
-    assert!(betas[2] >= 0.05, "{betas:?}"); // measured .163 .099 .056
+    assert!(betas[2] >= 0.05, "{betas:?}"); // measured 0.163 0.099 0.056
 }

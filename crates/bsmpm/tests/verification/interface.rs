@@ -47,7 +47,7 @@ fn beside(method: Stabilisation, at: f64, stiffer: f64, lighter: f64) -> [[f64; 
 /// Mixed, the stiffer layer's horizontal stress is 36 times too large with E 1:100 and 3,477 times with 1:1e4
 /// (consistent F-bar; F-bar 66 and 6,586). What is left is in the displacement, whose strain cannot jump: without any
 /// average it is
-/// 1.80 times too large above and .24 times what it should be below.
+/// 1.80 times too large above and 0.24 times what it should be below.
 #[test]
 fn the_stiffness_beside_an_interface_does_not_matter() {
     for method in METHODS.into_iter().filter(|method| method.averages()) {
@@ -55,8 +55,8 @@ fn the_stiffness_beside_an_interface_does_not_matter() {
             let [above, below] = beside(method, 6.0, stiffer, 1.0);
             println!("{method:?}, E 1:{stiffer}: above {above:.3?}, below {below:.3?}");
             for [xx, yy] in [above, below] {
-                assert!((xx - 1.0).abs() <= 0.12, "{method:?} 1:{stiffer}: {xx}"); // measured .103
-                assert!((yy - 1.0).abs() <= 0.5, "{method:?} 1:{stiffer}: {yy}"); // measured .481
+                assert!((xx - 1.0).abs() <= 0.12, "{method:?} 1:{stiffer}: {xx}"); // measured 0.103
+                assert!((yy - 1.0).abs() <= 0.5, "{method:?} 1:{stiffer}: {yy}"); // measured 0.481
             }
         }
     }
@@ -66,13 +66,13 @@ fn the_stiffness_beside_an_interface_does_not_matter() {
 #[test]
 fn a_jump_of_density_is_smeared_by_volume() {
     for method in METHODS.into_iter().filter(|method| method.averages()) {
-        // Over pairs of cells it is smeared farther: measured .076, .659.
+        // Over pairs of cells it is smeared farther: measured 0.076, 0.659.
         let bounds = if method == Stabilisation::SubgridFBar { [0.08, 0.7] } else { [0.07, 0.6] };
         for (lighter, bound) in [2.0, 10.0].into_iter().zip(bounds) {
             let [above, below] = beside(method, 6.0, 1.0, lighter);
             println!("{method:?}, 1:{lighter}: above {above:.3?}, below {below:.3?}");
             for [xx, yy] in [above, below] {
-                // By mass .095, .064 and .775, .611 (F-bar).
+                // By mass 0.095, 0.064 and 0.775, 0.611 (F-bar).
                 assert!((xx - 1.0).abs() <= bound, "{method:?} 1:{lighter}: {xx}");
                 assert!((yy - 1.0).abs() <= 0.04, "{method:?} 1:{lighter}: {yy}");
             }

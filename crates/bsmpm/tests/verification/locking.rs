@@ -10,7 +10,7 @@ use bsmpm::model::{Regime, Weighting};
 use bsmpm::observe::{Part, largest_displacement, noise};
 use bsmpm::stabilisation::Stabilisation;
 
-/// A block of 6 x 6 cells with nu = .49 on a fixed base beside a wall, under its weight: noise of the vertical stress
+/// A block of 6 x 6 cells with nu = 0.49 on a fixed base beside a wall, under its weight: noise of the vertical stress
 /// about planes, and the largest displacement.
 fn pressed(method: Stabilisation) -> (f64, f64) {
     let (noise, displacement, _) = pressed_by(QuasiNewton::default(), method);
@@ -39,9 +39,9 @@ fn pressed_by(quasi_newton: QuasiNewton, method: Stabilisation) -> (f64, f64, us
 #[test]
 fn f_bar_relieves_locking_and_the_oscillation_of_stress() {
     let [none, f_bar, modified] = [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar].map(pressed);
-    assert!(f_bar.0 <= 0.5 * none.0); // measured .095 against .328
-    assert!(modified.0 <= f_bar.0); // measured .070
-    assert!(f_bar.1 >= none.1); // measured .0599 against .0588
+    assert!(f_bar.0 <= 0.5 * none.0); // measured 0.095 against 0.328
+    assert!(modified.0 <= f_bar.0); // measured 0.070
+    assert!(f_bar.1 >= none.1); // measured 0.0599 against 0.0588
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn the_force_falls_with_its_square() {
         assert_eq!(last.report.newton_iterations, forces.len());
         assert!(last.report.history.iter().all(|measures| measures.method == Method::Newton));
         assert!(forces.len() <= 8, "{} iterations", forces.len());
-        // f_k+1 <= C f_k^2 once the plastic set no longer changes; measured C: 9.4, .09, 5.1.
+        // f_k+1 <= C f_k^2 once the plastic set no longer changes; measured C: 9.4, 0.09, 5.1.
         let [.., before, after] = forces[..] else { panic!("too few iterations") };
         assert!(after <= 30.0 * before * before, "{forces:?}");
     }

@@ -13,7 +13,7 @@ use bsmpm::tensor::Vector;
 const YOUNG: f64 = 100.0;
 const CELL: f64 = 0.5;
 
-/// Mean pressure under a strip of 1 m that has been pushed .4 m into half of a block of clay, 3 m x 2 m, with E/c =
+/// Mean pressure under a strip of 1 m that has been pushed 0.4 m into half of a block of clay, 3 m x 2 m, with E/c =
 /// 100.
 fn pressure(factor: f64) -> f64 {
     let elastic = Elastic { young: YOUNG, poisson: 0.495 };

@@ -73,7 +73,7 @@ fn ground(h: f64, cells: [usize; 2], above: usize, regime: Regime) -> Scene<Plan
     scene
 }
 
-/// A block of 1 x .5 m, of cells of 1/`n` m, on a rigid plate that is inclined by `slope`.
+/// A block of 1 x 0.5 m, of cells of 1/`n` m, on a rigid plate that is inclined by `slope`.
 fn block(n: usize, slope: f64, friction: f64, regime: Regime) -> Scene<PlaneStrain, 2> {
     let h = 1.0 / n as f64;
     let plate = RigidBody { friction, ..slab([-1.0, -0.5], [5.0, 0.5]) };
@@ -91,7 +91,7 @@ fn last(scene: &mut Scene<PlaneStrain, 2>, dt: f64, end: f64) -> RigidReport {
     last
 }
 
-/// Velocity under gravity that grows over the ramp, at .5 s, over that of a rigid block, less 1; and most iterations.
+/// Velocity under gravity that grows over the ramp, at 0.5 s, over that of a rigid block, less 1; and most iterations.
 fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
     const END: f64 = 0.5;
     const FRICTION: f64 = 0.3;
@@ -118,7 +118,7 @@ fn a_block_slides_down_a_rigid_plate_as_coulomb_says() {
     let [coarse, middle, fine] = [0.02, 0.01, 0.005].map(|dt| slid(4, dt, Nonlinear::Auto).0);
     let (cells, newton) = (slid(8, 0.01, Nonlinear::Auto).0, slid(4, 0.01, Nonlinear::Newton));
     println!("{coarse:.4} {middle:.4} {fine:.4}; cells half as large {cells:.4}; Newton {newton:?}");
-    // measured .0110, .0055, .0028; .0028
+    // measured 0.0110, 0.0055, 0.0028; 0.0028
     let order = (coarse / middle).log2();
     assert!(coarse < 0.012 && (0.8..1.2).contains(&order) && fine < 0.0035 && cells < 0.0035);
     assert!((newton.0 - middle).abs() < 1e-6 && newton.1 <= 10);
@@ -160,7 +160,7 @@ fn bar(cells: usize, gap: f64) -> [f64; 3] {
     [(pushed - 1) as f64 * dt * c / 2.0, velocity(&scene.points) / v, energy]
 }
 
-/// Wherever its points are in their cells as it comes: with .25 they have just come into new ones, whose nodes hold
+/// Wherever its points are in their cells as it comes: with 0.25 they have just come into new ones, whose nodes hold
 /// next to nothing.
 #[test]
 fn a_bar_hits_a_wall_and_leaves_it() {
@@ -251,7 +251,7 @@ fn a_flat_punch_is_a_strip() {
         })
     });
     println!("{found:.4?}");
-    // measured .9405 and .9416, with half the cells .9680 and .9690: a strip holds the whole cell at its end
+    // measured 0.9405 and 0.9416, with half the cells 0.9680 and 0.9690: a strip holds the whole cell at its end
     assert!(found[0].iter().all(|share| (0.93..1.0).contains(share)));
     assert!(found[1].iter().all(|share| (0.96..1.0).contains(share)));
 }
@@ -271,7 +271,7 @@ fn nothing_is_pulled_and_what_was_pressed_comes_back() {
             assert!(now.touched == 0 && now.force.norm() == 0.0 && left.abs() < 1e-6, "{now:?}");
         }
     });
-    // Of small strains; Hencky's are .5 % off at 1 %.
+    // Of small strains; Hencky's are 0.5 % off at 1 %.
     assert!((most / (oedometer * 0.01) - 1.0).abs() < 0.02, "{most}");
     let left = (0..scene.points.len()).map(|p| scene.points.sigma.at(p).0[1].abs()).fold(0.0, f64::max);
     assert!(left < 2e-3 * most, "{left} Pa of {most}");
@@ -292,12 +292,12 @@ fn pressed(steps: usize) -> f64 {
     work / Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()).elastic - 1.0
 }
 
-/// At a strain of .04; at a tenth of it a tenth of that is left.
+/// At a strain of 0.04; at a tenth of it a tenth of that is left.
 #[test]
 fn the_work_of_a_lid_is_the_energy_of_what_it_presses() {
     let found = [4, 16, 64].map(pressed);
     println!("{found:.5?}");
-    // measured .0018, 2e-4, 4e-5; by the force at the end alone it would be the n-th part of n steps more
+    // measured 0.0018, 2e-4, 4e-5; by the force at the end alone it would be the n-th part of n steps more
     assert!(found.iter().zip([3e-3, 4e-4, 1e-4]).all(|(off, most)| off.abs() < most), "{found:?}");
 }
 
@@ -377,6 +377,6 @@ fn a_rigid_block_slides_on_soil() {
     });
     let exact = G * (theta.sin() - 0.3 * theta.cos()) * (0.5 - 0.5 * RAMP);
     println!("{:.4} of it, {cuts} cuts", velocity / exact);
-    // measured .9998; without correcting statuses one by one 22 cuts
+    // measured 0.9998; without correcting statuses one by one 22 cuts
     assert!((velocity / exact - 1.0).abs() < 0.005 && cuts == 0);
 }

@@ -42,7 +42,7 @@ fn a_free_block_keeps_its_angular_momentum_with_consistent_mass() {
     for (cells, steps) in [(8, 40), (8, 160)] {
         let [lumped, consistent] = [MassMatrix::Lumped, MassMatrix::Consistent].map(|mass| lost(mass, cells, steps));
         println!("{cells} x {cells} cells, {steps} steps: lumped {lumped:.5?}, consistent {consistent:.5?}");
-        assert!(lumped[0] >= 0.03); // measured .044, .067
+        assert!(lumped[0] >= 0.03); // measured 0.044, 0.067
         assert!((0.0..=1e-3).contains(&consistent[0]));
         assert!((0.0..=2.0 * 1e-3).contains(&consistent[1]));
         assert!(consistent[2] <= 1e-12);
@@ -76,8 +76,8 @@ fn points_beside_a_base_move_more_nearly_as_their_velocity_says_with_consistent_
         println!("{mass:?}: says {says:.4}, moves {moves:.4}");
         moves / says
     });
-    assert!(lumped <= 0.02); // measured .0103
-    assert!((0.3..=1.0).contains(&consistent)); // measured .392
+    assert!(lumped <= 0.02); // measured 0.0103
+    assert!((0.3..=1.0).contains(&consistent)); // measured 0.392
 }
 
 /// The mean velocity (m/s) of a layer of a tenth of a cell, hardly stiff, that starts at 1 m/s on a fixed base, or
@@ -96,8 +96,8 @@ fn slid(wall_velocity: WallVelocity, is_fixed: bool, steps: usize) -> f64 {
     observe::momentum(&scene.points, &Part::Whole, &scene.halo())[0] / scene.points.mass.iter().sum::<f64>()
 }
 
-/// `dw/dt = -4 s w²/h` from 1 m/s, s = (1 - y/h)²: 1/(1 + 4 s) after 1 s, .208 and .226 m/s at the points' heights of
-/// 0.025 and 0.075 cells, of which the grid moves them by 0.05 to 0.14: measured .242 in 20 steps and .252 in 80.
+/// `dw/dt = -4 s w²/h` from 1 m/s, s = (1 - y/h)²: 1/(1 + 4 s) after 1 s, 0.208 and 0.226 m/s at the points' heights of
+/// 0.025 and 0.075 cells, of which the grid moves them by 0.05 to 0.14: measured 0.242 in 20 steps and 0.252 in 80.
 #[test]
 fn the_excess_velocity_beside_a_base_decays_over_a_path_whatever_the_step() {
     let [coarse, fine] = [20, 80].map(|steps| slid(WallVelocity::Relaxed, true, steps));

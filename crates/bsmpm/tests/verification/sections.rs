@@ -87,7 +87,8 @@ fn shear_and_moment_of_a_beam_are_those_of_statics() {
     }
 }
 
-/// A column of .5 m by .5 m, cut level, over a part, and at 45 degrees about an axis that is along none of the grid's.
+/// A column of 0.5 m by 0.5 m, cut level, over a part, and at 45 degrees about an axis that is along none of the
+/// grid's.
 #[test]
 fn the_normal_force_of_a_column_in_space_is_the_weight_above() {
     let scene = weighed::<Solid, 3>(0.25, [2, 2, 12], 2, Support::fixed(2, false));
@@ -99,7 +100,7 @@ fn the_normal_force_of_a_column_in_space_is_the_weight_above() {
         assert!((found.normal / -weight - 1.0).abs() < 2e-4);
         let others = [found.shear, found.bending].concat().into_iter().chain([found.torsion]);
         assert!(others.into_iter().all(|other| other.abs() < 1e-4 * weight), "{found:?}");
-        // Half of the rectangle in the body: half of the force, with its arm of .125 m about the middle of the face.
+        // Half of the rectangle in the body: half of the force, with its arm of 0.125 m about the middle of the face.
         let half = cut(&scene, [[[-0.25, 0.25, z], [0.25, 0.25, z]], [[0.0, -0.5, z], [0.0, 1.0, z]]]);
         assert!((half.normal / -weight - 0.5).abs() < 2e-3, "{half:?}");
         assert!((half.bending[0] / -weight - 0.0625).abs() < 2e-3 && half.bending[1].abs() < 1e-3 * weight, "{half:?}");

@@ -22,7 +22,7 @@ use nalgebra::DMatrix;
 type Plane = Scene<PlaneStrain, 2>;
 
 /// A column of height 1 and oedometric modulus 1 on 20 cells, of so many points a cell and axis: its weight, and so the
-/// pressure at its base, grows to .4 in the time 10.
+/// pressure at its base, grows to 0.4 in the time 10.
 fn column(poisson: f64, per_axis: usize) -> Plane {
     let young = (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson);
     let mut scene = Plane::new([axis(0.05, 1, 2), axis(0.05, 20, 2)], hencky(young, poisson), Regime::QuasiStatic)
@@ -60,8 +60,8 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
     let time = (step.t - step.dt, step.dt);
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = Nodes::map(model, &shape, points, time, &halo).expect("a mapping");
-    let grips = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), time);
-    let scene = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), time);
+    let scene = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let residual = Residual::of(&scene, u);
     let linearised = Linearised::at(&scene, &residual);
     let free: Vec<usize> = (0..u.len()).filter(|&c| nodes.free[c]).collect();

@@ -10,7 +10,7 @@ use bsmpm::tensor::Vector;
 
 const YOUNG: f64 = 1e7;
 const CELL: f64 = 0.25;
-const RUBS: Contact = Contact { friction: 0.4, lifts: true };
+const FRICTIONAL: Contact = Contact { friction: 0.4, lifts: true };
 
 /// A quasi-static block of 1 m, its base held, at whose top from `from` to `to` a strip moves by these rows (m).
 fn pressed(law: Contact, (from, to): (f64, f64), rows: &[(f64, [f64; 2])]) -> Scene<PlaneStrain, 2> {
@@ -40,12 +40,12 @@ fn pressed(law: Contact, (from, to): (f64, f64), rows: &[(f64, [f64; 2])]) -> Sc
 fn a_dragged_block_sticks_below_mu_n_and_slides_at_mu_n() {
     let rows = [(0.2, [0.0, -1e-3]), (1.0, [2e-3, -1e-3])];
     for method in [Nonlinear::Auto, Nonlinear::Newton] {
-        let mut scene = pressed(RUBS, (0.5, 1.5), &rows);
+        let mut scene = pressed(FRICTIONAL, (0.5, 1.5), &rows);
         scene.model.nonlinear = method;
         let (mut last, mut stuck) = (0.0, 0);
         scene.march(0.1, 1.0, |_, accepted| {
             let (strip, found) = of(accepted);
-            last = strip.force[0] / -strip.force[1] / RUBS.friction;
+            last = strip.force[0] / -strip.force[1] / FRICTIONAL.friction;
             stuck += usize::from(found.sliding == 0.0);
             assert!(last < 1.0 + 1e-6 && (found.sliding > 0.0 || found.dissipated == 0.0));
         });
@@ -58,7 +58,7 @@ fn a_dragged_block_sticks_below_mu_n_and_slides_at_mu_n() {
 fn a_strip_that_lifts_leaves_the_block_and_meets_it_where_it_left_it() {
     let rows = [(0.2, [0.0, -1e-3]), (0.5, [0.0, 2e-1]), (1.0, [0.0, -1e-3])];
     for method in [Nonlinear::Auto, Nonlinear::Newton] {
-        let mut scene = pressed(RUBS, (0.75, 1.25), &rows);
+        let mut scene = pressed(FRICTIONAL, (0.75, 1.25), &rows);
         scene.model.nonlinear = method;
         let mut pushed = Vec::new();
         scene.march(0.1, 1.0, |_, accepted| {
@@ -81,7 +81,7 @@ fn a_strip_that_lifts_leaves_the_block_and_meets_it_where_it_left_it() {
 #[test]
 fn a_strip_that_does_not_let_go_pulls() {
     let rows = [(0.2, [0.0, -1e-3]), (1.0, [0.0, 1e-3])];
-    let (_, steps) = pressed(Contact { lifts: false, ..RUBS }, (0.75, 1.25), &rows).solved(0.1, 1.0);
+    let (_, steps) = pressed(Contact { lifts: false, ..FRICTIONAL }, (0.75, 1.25), &rows).solved(0.1, 1.0);
     let (strip, found) = of(steps.last().expect("steps"));
     assert!(strip.force[1] > 8e3 && found.closed == 1.0 && found.gap == [0.0; 2], "{strip:?}");
 }

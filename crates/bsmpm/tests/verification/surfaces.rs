@@ -17,7 +17,7 @@ fn at(x: f64, y: f64) -> Vector<2> {
     Vector::<2>::new(x, y)
 }
 
-/// A weightless elastic block of `cells` cells of .25 m, with as much empty room above, held as in an oedometer.
+/// A weightless elastic block of `cells` cells of 0.25 m, with as much empty room above, held as in an oedometer.
 fn block(cells: [usize; 2], order: usize) -> Plane {
     let axes = [axis(0.25, cells[0], order), axis(0.25, 2 * cells[1], order)];
     let mut scene = Plane::new(axes, hencky(1000.0, 0.3), Regime::QuasiStatic)
@@ -60,7 +60,7 @@ fn surface_points_share_the_length_of_their_segment_cell_by_cell() {
 
 #[test]
 fn a_platens_force_follows_the_exact_curve_across_cells_and_the_points_stress_less_closely() {
-    // sigma = M ln(l)/l at l = .6: the platen crosses from one row of cells to the next, which a moving face cannot.
+    // sigma = M ln(l)/l at l = 0.6: the platen crosses from one row of cells to the next, which a moving face cannot.
     // F-bar averages over what little material a nearly empty row of cells holds: its force is off most where the
     // platen has just left one. Bounds of force and of a point's stress, 1.3 times what was measured.
     for (method, rough, [whole, local]) in
@@ -137,8 +137,8 @@ fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows
     (0..100).for_each(|_| l = (-100.0 / M * l).exp());
     let top = scene.points.surface.position[0][0][1];
     println!("stress off by {first:.1e} in the first step, {last:.1e} in the last; top at {top:.6}, exact {l:.6}");
-    // In the end the surface lies .27 of a cell inside its row, which the points do not fill.
-    assert!(first <= 1e-10 && last <= 0.06); // measured .046
+    // In the end the surface lies 0.27 of a cell inside its row, which the points do not fill.
+    assert!(first <= 1e-10 && last <= 0.06); // measured 0.046
     assert!((top - l).abs() <= 2.5e-5); // measured 1.9e-5
 }
 
@@ -289,7 +289,7 @@ fn a_pressure_turns_with_the_surface() {
     for dt in [0.02, 0.01, 0.005] {
         let [(mean, kept), (dead, _)] = [true, false].map(|follows| spun(follows, dt));
         println!("dt {dt}: pressure {mean:.4}, moment {:.1e}; of a dead load {dead:.4}", moment(kept));
-        assert!((mean - 1.0).abs() <= 0.004 && moment(kept).abs() <= 0.003, "{mean} {kept}"); // measured .0017, .0011
+        assert!((mean - 1.0).abs() <= 0.004 && moment(kept).abs() <= 0.003, "{mean} {kept}"); // measured 0.0017, 0.0011
         assert!(dead < 0.0, "{dead}");
     }
 }

@@ -18,7 +18,7 @@ const LOAD: f64 = 1e-5 * M;
 
 #[test]
 fn a_column_settles_alike_wherever_its_drained_surface_cuts_the_cells() {
-    // Terzaghi (1923): U at the time factor .2.
+    // Terzaghi (1923): U at the time factor 0.2.
     let mut errors = Vec::new();
     for cut in [0.05, 0.5] {
         let mut scene = column(20, cut, LOAD, PermeabilityLaw::Constant);
@@ -38,7 +38,7 @@ fn height(points: &Points<2>) -> f64 {
 
 #[test]
 fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
-    // Reference by lines (200 and 400 cells, extrapolated), Hencky's law, .5 M on top: settlement at these times.
+    // Reference by lines (200 and 400 cells, extrapolated), Hencky's law, 0.5 M on top: settlement at these times.
     let times = [0.1, 0.2, 0.5, 1.0];
     let cases = [
         (PermeabilityLaw::Constant, [0.16429, 0.22932, 0.29163, 0.29649]),
@@ -87,7 +87,7 @@ fn arc(radius: f64, cell: f64) -> (Vec<SurfacePoint<2>>, Vec<Vector<2>>) {
 }
 
 /// A quarter of a weightless body between two radii about the origin, which cut the cells, `cells` of them in 1 m; with
-/// water that flows through it, drained as told.
+/// water that flows through it, drained as prescribed.
 fn quarter(cells: usize, [inner, outer]: [f64; 2], drains: Vec<Drain<2>>) -> Plane {
     let cell = 1.0 / cells as f64;
     let rows = (outer * cells as f64) as usize + 1;
@@ -182,7 +182,7 @@ fn water_flows_through_a_ring_between_its_drained_arcs() {
         rates = [water.crossed.drains[0] / exact, water.crossed.drains[1] / exact];
     });
     println!("in and out over the closed form: {rates:.5?}");
-    assert!((rates[0] + 1.0).abs() <= 0.0062 && (rates[1] - 1.0).abs() <= 0.0062); // measured .0048
+    assert!((rates[0] + 1.0).abs() <= 0.0062 && (rates[1] - 1.0).abs() <= 0.0062); // measured 0.0048
 }
 
 /// Root mean square of the pressures about the quadratics through those of the cell and its neighbours, Pa.
@@ -252,7 +252,7 @@ fn under_strip(h: f64, [beyond, cut]: [f64; 2]) -> (Plane, usize) {
 
 #[test]
 fn pressures_under_a_strip_load_that_nothing_drains_are_smooth_and_those_of_the_layer() {
-    // In the half plane it would be q alpha/pi, alpha the angle that the strip is seen by: .5 at its depth of half its
+    // In the half plane it would be q alpha/pi, alpha the angle that the strip is seen by: 0.5 at its depth of half its
     // width below the middle. Cells of a quarter of that.
     let (scene, iterations) = under_strip(0.25, [0.0, 1.0]);
     let pressures = scene.points.pore_pressure.as_ref().expect("water flows");
@@ -261,12 +261,12 @@ fn pressures_under_a_strip_load_that_nothing_drains_are_smooth_and_those_of_the_
     let mean = ((0..count).map(|p| error(p).powi(2)).sum::<f64>() / count as f64).sqrt();
     let below = (0..count).filter(|&p| scene.points.x[p][1] < 7.5).map(|p| error(p).abs()).fold(0.0, f64::max);
     let noise = noise(&scene) / LOAD;
-    println!("off by {mean:.4} in the mean, {below:.4} from .5 m down; noise {noise:.5}; {iterations} iterations");
+    println!("off by {mean:.4} in the mean, {below:.4} from 0.5 m down; noise {noise:.5}; {iterations} iterations");
     assert!(mean <= 0.006 && below <= 0.0105 && noise <= 0.003); // 1.3 times what was measured
 }
 
 /// No checkerboard in twenty places of the surface and of the strip's end in their cells. Without the tau term the
-/// noise is .0074 to .0136 of the load, above the bound in all of them.
+/// noise is 0.0074 to 0.0136 of the load, above the bound in all of them.
 #[test]
 fn pressures_under_a_strip_load_stay_smooth_wherever_it_cuts_its_cells() {
     let places = (1..=20).map(|k| [f64::from(7 * k % 20), f64::from(k)].map(|of| of / 20.0));

@@ -8,7 +8,7 @@ use bsmpm::step::mass::MassMatrix;
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::PermeabilityLaw;
 
-/// s M/(q H) at t sqrt(M/rho)/H = .5, 1, 2, 4, 10, of gamma_w H/(k sqrt(M rho)) = 1, 10, 100.
+/// s M/(q H) at t sqrt(M/rho)/H = 0.5, 1, 2, 4, 10, of gamma_w H/(k sqrt(M rho)) = 1, 10, 100.
 const TABLE: [(f64, [f64; 5]); 3] = [
     (1.0, [0.444565, 0.801456, 1.347154, 0.882610, 1.003628]),
     (10.0, [0.238316, 0.347513, 0.498192, 0.697688, 0.933807]),
@@ -26,7 +26,7 @@ fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
         scene.model.regime = Regime::Dynamic;
         // rho = M, in which the unit of time is H sqrt(rho/M) = 1 s.
         scene.points.mass = scene.points.volume.iter().map(|volume| volume * M).collect();
-        scene.model.mass = MassMatrix::Consistent; // lumped: off by .029
+        scene.model.mass = MassMatrix::Consistent; // lumped: off by 0.029
         let rest = vec![Vector::<2>::zeros(); scene.points.len()];
         scene.points.motion = Some(Motion { v: rest.clone(), a: rest });
         let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");

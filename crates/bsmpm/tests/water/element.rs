@@ -59,7 +59,7 @@ fn undrained_strength_follows_from_the_effective_stress() {
             ];
             println!("{method:?} {t}: p, s', t {last:.1?}, {} iterations", report.iterations);
         });
-        // The dead load is of the first surface, which stretches by .1 %.
+        // The dead load is of the first surface, which stretches by 0.1 %.
         assert!((last[0] / 5e4 - 1.0).abs() < 0.005 && (last[1] / 1e5 - 1.0).abs() < 0.005);
         assert!((last[2] / 5e4 - 1.0).abs() < 0.005);
     }

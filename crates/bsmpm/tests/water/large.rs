@@ -189,7 +189,7 @@ fn of_terzaghis_volume(load: f64) -> Vec<[f64; 2]> {
     found
 }
 
-/// Steady flow upwards through a column that a load has pressed to .7 of its height, which the points of a cell no
+/// Steady flow upwards through a column that a load has pressed to 0.7 of its height, which the points of a cell no
 /// longer fill evenly: ln(l)/l = -(q - p)/M, p linear in space, H = 1/int ds/l(p(s)), w = k p_base/(gamma_w H).
 #[test]
 fn what_flows_through_a_compressed_column_is_what_leaves_by_its_drain() {

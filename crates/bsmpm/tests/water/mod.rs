@@ -41,7 +41,7 @@ fn at(x: f64, y: f64) -> Vector<2> {
     Vector::<2>::new(x, y)
 }
 
-/// Water that flows through one soil of porosity .6, at the rate that makes the coefficient of consolidation 1 m2/s in
+/// Water that flows through one soil of porosity 0.6, at the rate that makes the coefficient of consolidation 1 m2/s in
 /// a skeleton of the stiffness M; incompressible.
 pub fn flowing(law: PermeabilityLaw) -> Water<2> {
     let permeability = Permeability { along: at(WEIGHT / M, WEIGHT / M), law };

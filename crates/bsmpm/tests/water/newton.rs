@@ -84,8 +84,8 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
+    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let pores = nodes.pores.as_ref().expect("water flows");
     let mut random = Random::new(11);
     let mut free = |(length, pressure): (f64, f64)| -> Vec<f64> {

@@ -78,8 +78,8 @@ fn constants(mut scene: Plane) -> [f64; 2] {
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let pores = nodes.pores.as_ref().expect("it flows");
     let free: Vec<usize> = (0..nodes.free.len()).filter(|&c| nodes.free[c]).collect();
     let pressures: Vec<usize> = (0..pores.free.len()).filter(|&c| pores.free[c]).collect();
@@ -122,7 +122,9 @@ fn constants(mut scene: Plane) -> [f64; 2] {
 fn the_pair_is_stable_on_any_grid_whole_and_cut() {
     for cells in [4, 8, 12] {
         let found = [1.0, 0.65, 0.35, 0.05].map(|cut| constants(square(cells, cut)));
-        println!("{cells} cells, top row filled by 1, .65, .35, .05: beta without and with the tau term {found:.3?}");
+        println!(
+            "{cells} cells, top row filled by 1, 0.65, 0.35, 0.05: beta without and with the tau term {found:.3?}"
+        );
         assert!(found.iter().all(|[_, with]| *with > 0.7));
     }
 }
@@ -152,8 +154,8 @@ fn a_rotation_changes_neither_the_flow_nor_the_content_and_turns_the_forces() {
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let grips = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let problem = Problem { model, shape: &shape, nodes: &nodes, grips: &grips, points, halo: &halo };
+    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
     let number = |node: usize| model.grid.node_at(node);
     let place = |node: usize| {
         at(model.grid.axes()[0].greville(number(node)[0]), model.grid.axes()[1].greville(number(node)[1]))

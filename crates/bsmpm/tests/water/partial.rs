@@ -140,7 +140,7 @@ fn the_books_of_rain_close_with_what_suction_stores() {
     let courses = [(50.0, None, 0.5), (25.0, None, 0.5), (25.0, Some(stays), 0.5), (50.0, Some(rises.clone()), 0.0)];
     let lost = courses.into_iter().chain([(25.0, Some(rises), 0.0)]).map(|(dt, table, rain)| {
         let mut scene = column(10, rain * K, false);
-        let told = format!("{dt} s, {table:?}");
+        let reported = format!("{dt} s, {table:?}");
         if let Some(rows) = table {
             scene.model.water.as_mut().expect("there is water").ambient = Ambient::Level(rows);
             scene.points.pore_pressure = Some(vec![0.0; scene.points.len()]);
@@ -158,7 +158,7 @@ fn the_books_of_rain_close_with_what_suction_stores() {
         let given = start.elastic - now.elastic;
         let (spent, lost) = (books.flows.plastic / given, books.flows.numerical() / given);
         let (put_in, left) = (books.flows.external / given, books.closure(now) / given);
-        println!("{told}: of {given:.4} J from pores, {put_in:.4} put in: seepage {spent:.4}, lost {lost:.4}, left {left:.1e}");
+        println!("{reported}: of {given:.4} J from pores, {put_in:.4} put in: seepage {spent:.4}, lost {lost:.4}, left {left:.1e}");
         assert!(given > 0.0 && spent > 0.0 && left.abs() < 1e-6);
         lost
     });
@@ -203,7 +203,8 @@ fn a_front_of_rain_goes_down_without_oscillations() {
         assert!((gained / (0.05 * 0.5 * K * t) - 1.0).abs() < 2e-4, "all of the rain is in the ground");
     });
     println!("{iterations} iterations in 60 steps, falls {:.3} m, beyond the start {:.1e}", worst[0], worst[1]);
-    // A front of one cell between heads of 20 m and .1 m: ripples of two thousandths before it. Bounds: 1.3 times them.
+    // A front of one cell between heads of 20 m and 0.1 m: ripples of two thousandths before it. Bounds: 1.3 times
+    // them.
     assert!(worst[0] < 0.1 && worst[1] < 3.0e-3);
 }
 

@@ -6,7 +6,7 @@ use bsmpm::step::StepReport;
 use bsmpm::water::flow::{Course, DrainedFace, Given, PermeabilityLaw, Soil};
 use bsmpm::water::observed::PoreWater;
 
-/// T, U, and p/p0 at depths of .25, .5 and 1 of the column below its top.
+/// T, U, and p/p0 at depths of 0.25, 0.5 and 1 of the column below its top.
 const TABLE: [(f64, f64, [f64; 3]); 5] = [
     (0.05, 0.252313, [0.570805, 0.886152, 0.996869]),
     (0.1, 0.356823, [0.423759, 0.735651, 0.949305]),
@@ -72,7 +72,7 @@ fn pressures_do_not_oscillate_in_the_shortest_step() {
     }
 }
 
-/// Steps of the same length until T = .2, beside what 640 of them come to.
+/// Steps of the same length until T = 0.2, beside what 640 of them come to.
 #[test]
 fn consolidation_is_of_second_order_in_time() {
     let settled = [10, 20, 40, 640].map(|count| {
@@ -85,7 +85,7 @@ fn consolidation_is_of_second_order_in_time() {
     });
     let errors = [0, 1, 2].map(|k: usize| (settled[k] - settled[3]).abs());
     let orders = [0, 1].map(|k: usize| (errors[k] / errors[k + 1]).log2());
-    println!("U(.2) {settled:.6?} in 10, 20, 40 and 640 steps: errors {errors:.6?}, orders {orders:.2?}");
+    println!("U(0.2) {settled:.6?} in 10, 20, 40 and 640 steps: errors {errors:.6?}, orders {orders:.2?}");
     assert!(errors[0] < 0.001 && (settled[3] - 0.504088).abs() < 0.001);
     assert!(orders.iter().all(|order| *order > 1.8 && *order < 2.3));
 }
@@ -105,7 +105,7 @@ fn a_drained_surface_may_cut_the_cells() {
     let whole = of(1.0);
     for cut in [0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95] {
         let found = of(cut);
-        println!("cut {cut}: U(.2) {found:.5}, {:+.5}", found - whole);
+        println!("cut {cut}: U(0.2) {found:.5}, {:+.5}", found - whole);
         assert!((found - whole).abs() < 0.002);
     }
 }
@@ -134,7 +134,7 @@ fn a_line_across_which_strains_may_jump_does_not_tear_the_pressure() {
     };
     let (whole, lined) = (of(false), of(true));
     let off = whole.iter().zip(&lined).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    println!("pressures and U(.2) with a line at half the height: off by {off:.1e}");
+    println!("pressures and U(0.2) with a line at half the height: off by {off:.1e}");
     assert!(off < 5e-4);
 }
 

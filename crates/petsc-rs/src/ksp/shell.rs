@@ -22,7 +22,7 @@ impl Ksp<'_> {
         if self.reads_options && self.petsc.views() { self.set_from_options() } else { Ok(()) }
     }
 
-    /// The shell operator is another one from now on: the preconditioner is built anew. Collective.
+    /// The shell operator is another one from now on: the preconditioner is built again. Collective.
     pub fn shell_operator_changed(&mut self) -> Result<()> {
         self.is_ready = false;
         self.shell()?.0.changed()

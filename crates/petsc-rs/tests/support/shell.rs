@@ -4,7 +4,7 @@ use crate::{LOCAL, expect, poisson, text, wavy};
 use petsc_rs::{Error, Ksp, Matrix, PcFailure, Petsc, ShellPc, SolveInfo, Tolerances, Vector};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Solves exactly with the Poisson matrix by MUMPS; fails when it is told to.
+/// Solves exactly with the Poisson matrix by MUMPS; fails when it is asked to.
 struct Inner<'p> {
     ksp: Ksp<'p>,
     b: Vector<'p>,
@@ -135,7 +135,7 @@ pub fn shell_failures(petsc: &Petsc) -> Result<(), String> {
             solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map_err(text)?;
             let left = relative_residual(petsc, &matrix, &b, &x)?;
             expect(left < 1e-10, &format!("{method} leaves {left:e} after a failure"))?;
-            expect(inner.calls[0] == 2, "what failed is built anew")?;
+            expect(inner.calls[0] == 2, "what failed is built again")?;
         }
         // One rank alone: none may go on, whichever notices. Its set-up calls nothing collective.
         let (mut inner, mut ksp, mut count) = (Inner::new(petsc, &matrix)?, outer(petsc, method)?, 0);
@@ -167,7 +167,7 @@ pub fn panics(petsc: &Petsc) -> Result<(), String> {
     }
     let _ = std::panic::take_hook();
     expect(ends.iter().all(|end| end.as_deref() == Some("wanted")), &format!("{ends:?}"))?;
-    // Without what is lent, PETSc is told of an error instead of calling nothing.
+    // Without what is lent, PETSc receives of an error instead of calling nothing.
     let mut ksp = outer(petsc, "preonly")?;
     let verdict = ksp.solve(&b, &mut x);
     expect(matches!(verdict, Err(Error::Petsc { .. })), &format!("nothing is lent: {verdict:?}"))

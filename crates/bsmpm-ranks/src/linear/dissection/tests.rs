@@ -41,7 +41,7 @@ fn a_front_is_factorised_and_solved_as_a_dense_matrix() {
 }
 
 #[test]
-fn a_pivot_that_is_not_positive_and_finite_is_told() {
+fn a_pivot_that_is_not_positive_and_finite_is_reported() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let mut matrix = DMatrix::identity(40, 40);
         matrix[(37, 37)] = bad;
@@ -51,7 +51,7 @@ fn a_pivot_that_is_not_positive_and_finite_is_told() {
 
 /// The front of every part holds all that its unknowns couple with and all that its children leave.
 #[test]
-fn every_unknown_is_eliminated_once_and_before_what_it_is_told() {
+fn every_unknown_is_eliminated_once_and_before_what_receives_it() {
     fn check<const D: usize, const C: usize>(
         counts: [usize; D],
         q: usize,

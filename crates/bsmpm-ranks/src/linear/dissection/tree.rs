@@ -138,7 +138,7 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
 
 /// What one thread solves with.
 #[derive(Default)]
-pub struct Slate {
+pub struct Scratch {
     x: Vec<f64>,    // of the front in work
     rims: Vec<f64>, // of parts whose neighbours in the tree have not taken theirs
 }
@@ -152,42 +152,42 @@ pub struct Triangles<'a> {
 
 impl Triangles<'_> {
     /// Takes what is eliminated from the right-hand side `work`, by elimination numbers.
-    pub fn forward(&self, work: &mut [f64], slate: &mut Slate) {
+    pub fn forward(&self, work: &mut [f64], scratch: &mut Scratch) {
         let (eliminated, others) = work.split_at_mut(self.plan.eliminated());
-        self.forward_to(self.plan.parts.len() - 1, eliminated, slate);
-        others.iter_mut().zip(&slate.rims).for_each(|(value, taken)| *value += taken);
-        slate.rims.clear();
+        self.forward_to(self.plan.parts.len() - 1, eliminated, scratch);
+        others.iter_mut().zip(&scratch.rims).for_each(|(value, taken)| *value += taken);
+        scratch.rims.clear();
     }
 
     /// Solves for what is eliminated, given the solution of the last numbers of `work`.
-    pub fn backward(&self, work: &mut [f64], slate: &mut Slate) {
+    pub fn backward(&self, work: &mut [f64], scratch: &mut Scratch) {
         let (eliminated, others) = work.split_at_mut(self.plan.eliminated());
-        slate.rims.extend_from_slice(others);
-        self.backward_to(self.plan.parts.len() - 1, eliminated, slate);
+        scratch.rims.extend_from_slice(others);
+        self.backward_to(self.plan.parts.len() - 1, eliminated, scratch);
     }
 
-    fn forward_to(&self, root: usize, work: &mut [f64], slate: &mut Slate) {
+    fn forward_to(&self, root: usize, work: &mut [f64], scratch: &mut Scratch) {
         if !is_worth(self.plan, root) {
-            return self.forward_in_order(self.plan.parts[root].first..root + 1, work, slate);
+            return self.forward_in_order(self.plan.parts[root].first..root + 1, work, scratch);
         }
         let (first, last) = halves(self.plan, root);
         let (low, rest) = work.split_at_mut(self.plan.numbers_to(first).len());
         let Some(last) = last else {
-            self.forward_to(first, low, slate);
-            return self.forward_in_order(root..root + 1, rest, slate);
+            self.forward_to(first, low, scratch);
+            return self.forward_in_order(root..root + 1, rest, scratch);
         };
         let (high, own) = rest.split_at_mut(self.plan.numbers_to(last).len());
         let other = || {
-            let mut slate = Slate::default();
-            self.forward_to(last, high, &mut slate);
-            slate.rims
+            let mut scratch = Scratch::default();
+            self.forward_to(last, high, &mut scratch);
+            scratch.rims
         };
-        let ((), other) = rayon::join(|| self.forward_to(first, low, slate), other);
-        slate.rims.extend(other);
-        self.forward_in_order(root..root + 1, own, slate);
+        let ((), other) = rayon::join(|| self.forward_to(first, low, scratch), other);
+        scratch.rims.extend(other);
+        self.forward_in_order(root..root + 1, own, scratch);
     }
 
-    fn forward_in_order(&self, parts: Range<usize>, work: &mut [f64], Slate { x, rims }: &mut Slate) {
+    fn forward_in_order(&self, parts: Range<usize>, work: &mut [f64], Scratch { x, rims }: &mut Scratch) {
         let base = self.plan.parts[parts.start].own.start;
         for index in parts {
             let part = &self.plan.parts[index];
@@ -207,24 +207,24 @@ impl Triangles<'_> {
         }
     }
 
-    fn backward_to(&self, root: usize, work: &mut [f64], slate: &mut Slate) {
+    fn backward_to(&self, root: usize, work: &mut [f64], scratch: &mut Scratch) {
         if !is_worth(self.plan, root) {
-            return self.backward_in_order(self.plan.parts[root].first..root + 1, work, slate);
+            return self.backward_in_order(self.plan.parts[root].first..root + 1, work, scratch);
         }
         let (first, last) = halves(self.plan, root);
         let (low, rest) = work.split_at_mut(self.plan.numbers_to(first).len());
         let Some(last) = last else {
-            self.backward_in_order(root..root + 1, rest, slate);
-            return self.backward_to(first, low, slate);
+            self.backward_in_order(root..root + 1, rest, scratch);
+            return self.backward_to(first, low, scratch);
         };
         let (high, own) = rest.split_at_mut(self.plan.numbers_to(last).len());
-        self.backward_in_order(root..root + 1, own, slate);
-        let start = slate.rims.len() - self.plan.parts[last].rim.len();
-        let mut other = Slate { rims: slate.rims.split_off(start), ..Slate::default() };
-        rayon::join(|| self.backward_to(first, low, slate), || self.backward_to(last, high, &mut other));
+        self.backward_in_order(root..root + 1, own, scratch);
+        let start = scratch.rims.len() - self.plan.parts[last].rim.len();
+        let mut other = Scratch { rims: scratch.rims.split_off(start), ..Scratch::default() };
+        rayon::join(|| self.backward_to(first, low, scratch), || self.backward_to(last, high, &mut other));
     }
 
-    fn backward_in_order(&self, parts: Range<usize>, work: &mut [f64], Slate { x, rims }: &mut Slate) {
+    fn backward_in_order(&self, parts: Range<usize>, work: &mut [f64], Scratch { x, rims }: &mut Scratch) {
         let base = self.plan.parts[parts.start].own.start;
         for index in parts.rev() {
             let part: &Supernode = &self.plan.parts[index];

@@ -182,7 +182,7 @@ fn scales_of_pipes(wall: f64, n: usize) -> Vec<Result<f64, String>> {
 
 /// Measured at 2 points along an axis: 0.969 to 1.024 at a fifth of a cell, 0.48 to 1.85 at a hundredth.
 #[test]
-fn the_factor_tells_walls_that_lines_do_not_see() {
+fn the_factor_shows_walls_that_lines_do_not_see() {
     let off = |wall: f64| {
         let scales = scales_of_pipes(wall, 2).into_iter().map(Result::unwrap);
         scales.map(|scale| (scale - 1.0).abs()).fold(0.0, f64::max)
@@ -190,7 +190,10 @@ fn the_factor_tells_walls_that_lines_do_not_see() {
     assert!(off(1.0) < 0.02 && off(0.2) < 0.04, "{} {}", off(1.0), off(0.2));
     assert!(off(0.01) > 0.4, "{}", off(0.01));
     let unseen = scales_of_pipes(1e-7, 2);
-    assert!(unseen.iter().any(|scale| matches!(scale, Err(told) if told.contains("between the lines"))), "{unseen:?}");
+    assert!(
+        unseen.iter().any(|scale| matches!(scale, Err(message) if message.contains("between the lines"))),
+        "{unseen:?}"
+    );
 }
 
 /// However small it is: a sphere's box is where its lines are.

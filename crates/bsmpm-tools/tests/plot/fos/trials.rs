@@ -1,4 +1,4 @@
-//! Which trials are made, and that no more than the clock tells how many at a time.
+//! Which trials are made, and that no more than the clock decides how many at a time.
 
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
@@ -41,8 +41,8 @@ fn the_number_of_jobs_changes_the_clock_and_nothing_else() {
             let mut found = bench.found();
             assert_eq!(found["jobs"].to_string(), jobs);
             without_times(&mut found);
-            let told: Vec<String> = text(&output.stderr).lines().map(without_seconds).collect();
-            (found, told, fs::read(bench.path("slope.fos/fos.png")).unwrap())
+            let reported: Vec<String> = text(&output.stderr).lines().map(without_seconds).collect();
+            (found, reported, fs::read(bench.path("slope.fos/fos.png")).unwrap())
         };
         let alone = found("1");
         assert!(alone.0["trials"].as_array().unwrap().len() == alone.1.len());
@@ -57,7 +57,7 @@ fn the_number_of_jobs_changes_the_clock_and_nothing_else() {
 }
 
 #[test]
-fn a_search_that_is_told_to_end_takes_its_runs_along() {
+fn a_search_that_is_asked_to_end_takes_its_runs_along() {
     let bench = Bench::new(SLOPE, "kink=1.373 lasts=0.1");
     let mut search = bench.command("2", &[]).spawn().unwrap();
     let pids = || fs::read_to_string(bench.path("pids")).unwrap_or_default();

@@ -10,10 +10,10 @@ fn a_malformed_case_ends_with_65_and_its_line_and_key_and_leaves_nothing() {
     let scratch = Scratch::with_case(&changed(COLUMN, "poisson = 0.3", "poissson = 0.3"));
     let output = scratch.job(Some(2), &["case.toml"]).within(30).run().expect(65);
     let place = format!("case.toml:{line}:");
-    let told: Vec<&str> = output.stderr.lines().filter(|line| line.starts_with(&place)).collect();
-    assert_eq!(told.len(), 1, "one error in line {line}: {output:#?}");
+    let reported: Vec<&str> = output.stderr.lines().filter(|line| line.starts_with(&place)).collect();
+    assert_eq!(reported.len(), 1, "one error in line {line}: {output:#?}");
     assert!(
-        told[0].contains(" material.soil.poissson: ") && told[0].contains("did you mean `poisson`?"),
+        reported[0].contains(" material.soil.poissson: ") && reported[0].contains("did you mean `poisson`?"),
         "{output:#?}"
     );
     output.says_once("nothing was run or written");
@@ -32,7 +32,7 @@ fn what_is_no_text_of_a_case_ends_with_65() {
 }
 
 #[test]
-fn all_errors_of_a_case_and_its_overrides_are_told_in_one_go() {
+fn all_errors_of_a_case_and_its_overrides_are_reported_in_one_go() {
     let text = changed(&changed(COLUMN, "poisson = 0.3", "poisson = 0.6"), "steps = 5", "steps = 1.5");
     let scratch = Scratch::with_case(&changed(&text, "type  = ", "typ = "));
     let output = scratch.mpirun(2, &["case.toml", "--set", "grid.cell=-1"]).expect(65);

@@ -78,8 +78,8 @@ fn i20_hostile_sizes_are_refused_at_once_in_little_memory() {
         let scratch = Scratch::with_case(COLUMN);
         let arguments: Vec<&str> = ["case.toml"].into_iter().chain(set.iter().flat_map(|set| ["--set", set])).collect();
         let output = scratch.job(Some(2), &arguments).limited(REFUSAL).within(30).run().expect(65);
-        let told: Vec<&str> = output.stderr.lines().filter(|line| line.contains(says)).collect();
-        assert!(told.len() == 1 && told[0].contains(key), "{key}, {says}: {output:#?}");
+        let reported: Vec<&str> = output.stderr.lines().filter(|line| line.contains(says)).collect();
+        assert!(reported.len() == 1 && reported[0].contains(key), "{key}, {says}: {output:#?}");
         output.says_once("nothing was run or written");
         assert_eq!(scratch.entries(), ["case.toml"]);
     }

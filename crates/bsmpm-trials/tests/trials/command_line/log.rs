@@ -4,7 +4,7 @@ use crate::support::cases::COLUMN;
 use crate::support::{Output, Scratch};
 use serde_json::Value;
 
-fn steps_told(output: &Output) -> Vec<u64> {
+fn steps_reported(output: &Output) -> Vec<u64> {
     let number = |line: &str| line.strip_prefix("step ")?.split_whitespace().next()?.parse().ok();
     output.stderr.lines().filter_map(number).collect()
 }
@@ -14,7 +14,7 @@ fn every_step_is_one_line_on_stderr_from_one_rank() {
     for ranks in [1, 2, 3] {
         let scratch = Scratch::with_case(COLUMN);
         let output = scratch.mpirun(ranks, &["case.toml"]).expect(0);
-        assert_eq!(steps_told(&output), [1, 2, 3, 4, 5], "{output:#?}");
+        assert_eq!(steps_reported(&output), [1, 2, 3, 4, 5], "{output:#?}");
         assert_eq!(output.stdout, "");
         assert_eq!(output.stderr.lines().count(), 7, "five steps, the end and the indicators: {output:#?}");
         assert!(!output.stderr.contains('\u{1b}') && !output.stderr.contains('\r'), "no bar without a terminal");
@@ -45,7 +45,7 @@ fn verbose_says_more() {
     let plain = scratch.mpirun(2, &["case.toml"]).expect(0);
     let verbose = scratch.mpirun(2, &["case.toml", "-v", "--force"]).expect(0);
     assert!(verbose.stderr.lines().count() > plain.stderr.lines().count(), "{verbose:#?}");
-    assert_eq!(steps_told(&verbose), [1, 2, 3, 4, 5]);
+    assert_eq!(steps_reported(&verbose), [1, 2, 3, 4, 5]);
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn a_json_log_is_one_object_a_line() {
 }
 
 #[test]
-fn warnings_of_the_case_are_told_once_and_kept() {
+fn warnings_of_the_case_are_reported_once_and_kept() {
     let scratch = Scratch::with_case(COLUMN);
     let output = scratch.mpirun(2, &["case.toml", "--set", "output.every=2"]).expect(0);
     output.says_once("beyond the end of the run");

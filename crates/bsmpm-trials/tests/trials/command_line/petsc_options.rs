@@ -35,9 +35,9 @@ fn ksp_reports_every_solve_of_a_default_run() {
         let solves = linear.reasons["CONVERGED_ITS"];
         assert_eq!(linear.reasons.len(), 1, "{linear:?}");
         assert_eq!(solves as f64, steps.get("linear_iterations").unwrap().iter().sum::<f64>());
-        let told =
+        let reported =
             ["type: preonly", "dissection", "Linear solve converged due to CONVERGED_ITS", "1 KSP Residual norm"];
-        for text in told {
+        for text in reported {
             assert_eq!(lines(&output.stdout, text) as u64, solves, "{text}");
         }
         assert_eq!(lines(&output.stdout, "type: shell") as u64, 2 * solves, "the preconditioner and the matrix");
@@ -69,14 +69,14 @@ fn conjugate_gradients_take_the_default_preconditioner() {
 #[test]
 fn the_manifest_counts_what_ksp_said() {
     let scratch = Scratch::with_case(COLUMN);
-    let told = |code: i32, options: &[&str]| {
+    let reports = |code: i32, options: &[&str]| {
         scratch.mpirun(2, &[&["case.toml", "-q", "--force"], options].concat()).expect(code);
         manifest(&scratch.path("case.out")).linear["stiffness"].clone()
     };
-    let linear = told(0, &["--set", "solver.linear=multigrid"]);
+    let linear = reports(0, &["--set", "solver.linear=multigrid"]);
     assert_eq!((&*linear.ksp, &*linear.pc), ("cg", "gamg"));
     assert!(linear.reasons.len() == 1 && linear.reasons["CONVERGED_RTOL"] > 0, "{linear:?}");
-    let linear = told(80, &["--", "-ksp_type", "cg", "-pc_type", "jacobi", "-ksp_max_it", "2"]);
+    let linear = reports(80, &["--", "-ksp_type", "cg", "-pc_type", "jacobi", "-ksp_max_it", "2"]);
     assert!(linear.reasons.len() == 1 && linear.reasons["DIVERGED_ITS"] > 0, "{linear:?}");
 }
 

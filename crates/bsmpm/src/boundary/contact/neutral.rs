@@ -28,7 +28,7 @@ impl<const D: usize> Contacts<D> {
         halo.max(&mut marks, 1);
         let owned = halo.owned();
         let mut held = [0.0];
-        for at in self.nodes.iter_mut().filter(|at| marks[at.node] > 0.0 && is_rubbed(at.status)) {
+        for at in self.nodes.iter_mut().filter(|at| marks[at.node] > 0.0 && has_friction(at.status)) {
             (at.status, at.is_neutral) = (Status::Stick, true);
             held[0] += f64::from(u8::from(owned.contains(at.node)));
         }
@@ -63,6 +63,6 @@ impl<const D: usize> Contacts<D> {
 }
 
 /// Whether a node slides against friction.
-fn is_rubbed<const D: usize>(status: Status<D>) -> bool {
+fn has_friction<const D: usize>(status: Status<D>) -> bool {
     matches!(status, Status::Slip(direction) if direction.norm_squared() > 0.0)
 }

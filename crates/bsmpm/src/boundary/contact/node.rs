@@ -5,7 +5,7 @@ use crate::nodal::Nodal;
 use crate::tensor::Vector;
 
 /// Part of a cell within which material cannot have come since the last step, if its node was not free to move then:
-/// what F tells of the gap is off by the curvature of the motion.
+/// what F says of the gap is off by the curvature of the motion.
 const KEPT: f64 = 0.05;
 
 /// Times the force by which statuses may be contradicted, by which friction may be off Coulomb's law for the slip, or
@@ -69,9 +69,9 @@ impl<const D: usize> ContactNode<D> {
         let slip = Vector::from_fn(|component, _| if self.along[component] { of(component) } else { 0.0 });
         self.status = if self.law.lifts && normal > -self.gap { Status::Open } else { self.met(&slip) };
         (self.transverse_stiffness, self.slip_length) = (0.0, slip.norm());
-        let rubs = self.law.friction > 0.0;
+        let has_friction = self.law.friction > 0.0;
         self.rested = std::array::from_fn(|component| {
-            let held = component == self.axis || rubs && self.along[component];
+            let held = component == self.axis || has_friction && self.along[component];
             t > 0.0 && had_material && self.gap == 0.0 && held && of(component) == 0.0
         });
     }
@@ -132,13 +132,13 @@ impl<const D: usize> ContactNode<D> {
         (force, length): (f64, f64),
     ) -> bool {
         let beside = transverse(slip, direction).norm();
-        let off = self.rubbed(direction, slip, limit) + now * limit;
+        let off = self.friction_force(direction, slip, limit) + now * limit;
         slip.norm() > length && beside > BESIDE * length && off.norm() > TURNED * force
     }
 
     /// N  friction on the body where it slips along `direction` but for `slip`, m: Newton's linear form of
     /// mu N u_t / |u_t| about the last slip, of which the part beside `direction` turns it.
-    pub fn rubbed(&self, direction: &Vector<D>, slip: &Vector<D>, limit: f64) -> Vector<D> {
+    pub fn friction_force(&self, direction: &Vector<D>, slip: &Vector<D>, limit: f64) -> Vector<D> {
         let along = -direction * limit;
         if self.transverse_stiffness == 0.0 {
             return along;

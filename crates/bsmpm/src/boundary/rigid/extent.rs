@@ -4,7 +4,7 @@ use super::ROUNDING;
 use super::RigidContacts;
 use super::body::{Pose, RigidBody, RigidState};
 use super::near::{longest_edge, reach};
-use super::point::{Grip, RigidPoint, tangents};
+use super::point::{ContactStatus, RigidPoint, tangents};
 use super::surroundings::Reaching;
 use crate::parallel::Halo;
 use crate::tensor::Vector;
@@ -30,7 +30,7 @@ impl<const D: usize> RigidContacts<D> {
         let motions = self.found(u, halo);
         let held = |near: &RigidPoint<D>| {
             let gap = near.gap_after(&self.moved(near, u, &motions));
-            Held { point: near.point, body: near.body, gap, touches: near.grip != Grip::Open }
+            Held { point: near.point, body: near.body, gap, touches: near.status != ContactStatus::Open }
         };
         let mut all: Vec<Held> = self.points.iter().map(held).collect();
         all.sort_by(|a, b| a.point.cmp(&b.point).then(b.touches.cmp(&a.touches)).then(a.gap.total_cmp(&b.gap)));

@@ -1,7 +1,7 @@
 //! Which points are near a rigid body in a step, how far from it, and what they start the step as.
 
 use super::motion::BodyInStep;
-use super::point::{Grip, RigidPoint, along, tangents};
+use super::point::{ContactStatus, RigidPoint, along, tangents};
 use super::surroundings::{Reaching, Surroundings};
 use super::{CLOSE, PENALTY, RigidContacts};
 use crate::error::StepError;
@@ -79,16 +79,16 @@ impl<const D: usize> RigidContacts<D> {
             contacts.moving = around.free.iter().enumerate().map(marked).collect();
         }
         let motions = vec![Vector::zeros(); bodies.len()];
-        let grip = |point: &RigidPoint<D>| {
+        let status = |point: &RigidPoint<D>| {
             let moved = contacts.moved(point, guess, &motions);
             // What touches as the step begins goes on to: a body that goes away faster than the guess followed would
             // let go of all that it holds, which soil that yields cannot stand.
             let is_met = point.gap_after(&moved).min(point.gap_before()) <= CLOSE * contacts.edge;
-            (if is_met { point.met(&moved) } else { Grip::Open }, moved)
+            (if is_met { point.met(&moved) } else { ContactStatus::Open }, moved)
         };
-        let grips: Vec<(Grip, Vector<D>)> = contacts.points.iter().map(grip).collect();
-        contacts.points.iter_mut().zip(&grips).for_each(|(point, (grip, moved))| point.take(*grip, moved));
-        let moved: Vec<Vector<D>> = grips.iter().map(|(_, moved)| *moved).collect();
+        let statuses: Vec<(ContactStatus, Vector<D>)> = contacts.points.iter().map(status).collect();
+        contacts.points.iter_mut().zip(&statuses).for_each(|(point, (status, moved))| point.take(*status, moved));
+        let moved: Vec<Vector<D>> = statuses.iter().map(|(_, moved)| *moved).collect();
         contacts.hold_neutral(&moved, &vec![false; moved.len()], halo);
         contacts.strike(halo);
         contacts.settle(halo)?;
@@ -136,7 +136,7 @@ impl<const D: usize> RigidContacts<D> {
                 let pores = around.pore_pressure.filter(|_| body.friction > 0.0);
                 let water =
                     pores.map_or(0.0, |pores| pressing(pores, around, (patch.first_node, p), (&normal, &place)));
-                let carried = points.grip.as_ref().map_or([0.0; 2], |grip| along(&tangents, &grip[p]));
+                let carried = points.grip.as_ref().map_or([0.0; 2], |carried| along(&tangents, &carried[p]));
                 self.points.push(RigidPoint {
                     body: number,
                     point: p,
@@ -152,7 +152,7 @@ impl<const D: usize> RigidContacts<D> {
                     friction: body.friction,
                     water,
                     carried,
-                    grip: Grip::Open,
+                    status: ContactStatus::Open,
                     transverse_share: 0.0,
                 });
             }

@@ -7,7 +7,7 @@
 //! slide in one direction, nothing holds the body.
 
 use super::body::MOTIONS;
-use super::point::{Grip, RigidPoint};
+use super::point::{ContactStatus, RigidPoint};
 use super::{BodyInStep, RigidContacts};
 use crate::parallel::Halo;
 use crate::tensor::Vector;
@@ -30,7 +30,7 @@ impl<const D: usize> RigidContacts<D> {
     /// Takes points to stick, of each body with a loose motion, about what has `moved`, m, of every point; those that
     /// have just come to slide are left out. How many. Two reductions for each motion that is loose, and one.
     pub(super) fn hold_neutral(&mut self, moved: &[Vector<D>], released: &[bool], halo: &dyn Halo) -> usize {
-        if self.dt > 0.0 || !self.is_coupled() || !self.rubs() {
+        if self.dt > 0.0 || !self.is_coupled() || !self.has_friction() {
             return 0;
         }
         let mut held = 0;
@@ -54,7 +54,7 @@ impl<const D: usize> RigidContacts<D> {
                 let [towards, against, least] = [0, 1, 2].map(|k| extremes[3 * point.body + k]);
                 let is_neutral = |slip: f64| slip <= -least;
                 if towards > 0.0 && against > 0.0 && sliding.is_some_and(|sliding| is_neutral(sliding.slip)) {
-                    point.grip = Grip::Stick;
+                    point.status = ContactStatus::Stick;
                     count[0] += 1.0;
                 }
             }
@@ -93,7 +93,7 @@ fn loosest<const D: usize>(at: &BodyInStep<D>, stuck: &Matrix3<f64>, now: &Matri
 /// Of a point that slides along the loose motion of its body.
 fn sliding<const D: usize>(point: &RigidPoint<D>, moved: &Vector<D>, loose: &[Option<Vector<3>>]) -> Option<Sliding> {
     let motion = loose[point.body]?;
-    let Grip::Slip(towards) = point.grip else { return None };
+    let ContactStatus::Slip(towards) = point.status else { return None };
     let along = point.along_motion(&motion);
     let friction = towards[0] * along[0] + towards[1] * along[1];
     let size = along[0].hypot(along[1]);

@@ -1,16 +1,16 @@
-//! A material point near a rigid body in one step: what pushes and rubs it.
+//! A material point near a rigid body in one step: the normal force and friction on it.
 
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
 
 /// What a point does at an outline in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Grip {
+pub enum ContactStatus {
     /// Off it: no force.
     Open,
     /// On it, and held along it.
     Stick,
-    /// On it, and rubbed towards here along it: a unit vector of its tangents' components; 0 without friction.
+    /// On it, and slipping towards here along it: a unit vector of its tangents' components; 0 without friction.
     Slip(Along),
 }
 
@@ -60,7 +60,7 @@ pub(super) struct RigidPoint<const D: usize> {
     /// N  along the outline, from the last step
     pub carried: Along,
     /// what it does
-    pub grip: Grip,
+    pub status: ContactStatus,
     /// of what would hold it, the part that friction leaves of what is beside its direction; in space
     pub transverse_share: f64,
 }
@@ -154,10 +154,10 @@ impl<const D: usize> RigidPoint<D> {
     /// N  normal and tangential force on the material, that of its status.
     pub fn pushed(&self, moved: &Vector<D>) -> (f64, Along) {
         let normal = -self.stiffness * self.gap_after(moved);
-        match self.grip {
-            Grip::Open => (0.0, [0.0; 2]),
-            Grip::Stick => (normal, self.held(moved)),
-            Grip::Slip(towards) => {
+        match self.status {
+            ContactStatus::Open => (0.0, [0.0; 2]),
+            ContactStatus::Stick => (normal, self.held(moved)),
+            ContactStatus::Slip(towards) => {
                 let beside = self.transverse(towards, || self.held(moved));
                 let limit = self.limit(normal);
                 (normal, [0, 1].map(|k| towards[k] * limit + beside[k]))
@@ -182,10 +182,10 @@ impl<const D: usize> RigidPoint<D> {
     }
 
     /// Takes a status that what has `moved` asks for.
-    pub fn take(&mut self, grip: Grip, moved: &Vector<D>) {
+    pub fn take(&mut self, status: ContactStatus, moved: &Vector<D>) {
         let (held, limit) = (size(self.held(moved)), self.limit(-self.stiffness * self.gap_after(moved)));
-        let turns = D > 2 && matches!(grip, Grip::Slip(_)) && held > 0.0;
-        self.grip = grip;
+        let turns = D > 2 && matches!(status, ContactStatus::Slip(_)) && held > 0.0;
+        self.status = status;
         self.transverse_share = if turns { (limit.max(0.0) / held).min(1.0) } else { 0.0 };
     }
 
@@ -218,14 +218,14 @@ impl<const D: usize> RigidPoint<D> {
     /// N  change of the force with a change of what has moved; `whole`: with the part that is not symmetric.
     pub fn rate(&self, moved: &Vector<D>, whole: bool) -> Vector<D> {
         let normal = -self.stiffness * self.normal.dot(moved);
-        match self.grip {
-            Grip::Open => Vector::zeros(),
-            Grip::Stick => self.rate_if_held(moved),
-            Grip::Slip(towards) => {
+        match self.status {
+            ContactStatus::Open => Vector::zeros(),
+            ContactStatus::Stick => self.rate_if_held(moved),
+            ContactStatus::Slip(towards) => {
                 let held = || self.components(moved).map(|along| -self.stiffness * along);
                 let beside = self.vector(self.transverse(towards, held));
-                let rubbed = if whole { self.friction * normal } else { 0.0 };
-                self.normal * normal + self.vector(towards.map(|part| part * rubbed)) + beside
+                let friction_force = if whole { self.friction * normal } else { 0.0 };
+                self.normal * normal + self.vector(towards.map(|part| part * friction_force)) + beside
             }
         }
     }
@@ -238,67 +238,71 @@ impl<const D: usize> RigidPoint<D> {
 
     /// N  the same with friction that holds whatever touches.
     pub fn rate_if_stuck(&self, moved: &Vector<D>) -> Vector<D> {
-        match self.grip {
-            Grip::Slip(_) if self.friction > 0.0 => self.rate_if_held(moved),
+        match self.status {
+            ContactStatus::Slip(_) if self.friction > 0.0 => self.rate_if_held(moved),
             _ => self.rate(moved, false),
         }
     }
 
     /// N m  friction's work on what slides, not positive; 0 where nothing does.
-    pub fn rubbed(&self, moved: &Vector<D>) -> f64 {
-        match self.grip {
-            Grip::Slip(_) => product(self.pushed(moved).1, self.slip(moved)),
-            Grip::Open | Grip::Stick => 0.0,
+    pub fn friction_work(&self, moved: &Vector<D>) -> f64 {
+        match self.status {
+            ContactStatus::Slip(_) => product(self.pushed(moved).1, self.slip(moved)),
+            ContactStatus::Open | ContactStatus::Stick => 0.0,
         }
     }
 
     /// The status that a displacement asks for that closes the gap.
-    pub fn met(&self, moved: &Vector<D>) -> Grip {
+    pub fn met(&self, moved: &Vector<D>) -> ContactStatus {
         let (held, limit) = (self.held(moved), self.limit(-self.stiffness * self.gap_after(moved)));
         match self.friction {
-            0.0 => Grip::Slip([0.0; 2]),
-            _ if size(held) > limit.max(0.0) => Grip::Slip(held.map(|part| part / size(held))),
-            _ => Grip::Stick,
+            0.0 => ContactStatus::Slip([0.0; 2]),
+            _ if size(held) > limit.max(0.0) => ContactStatus::Slip(held.map(|part| part / size(held))),
+            _ => ContactStatus::Stick,
         }
     }
 
     /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m;
     /// and by how much it contradicts the one that is, N: of what has moved too far, what soil would have resisted
     /// with.
-    pub fn corrected(&self, moved: &Vector<D>, (force, length): (f64, f64)) -> (Grip, f64) {
+    pub fn corrected(&self, moved: &Vector<D>, (force, length): (f64, f64)) -> (ContactStatus, f64) {
         let soil = 1.0 / super::PENALTY;
-        if self.grip == Grip::Open {
+        if self.status == ContactStatus::Open {
             let depth = -self.gap_after(moved);
-            return if depth > length { (self.met(moved), soil * self.stiffness * depth) } else { (Grip::Open, 0.0) };
+            return if depth > length {
+                (self.met(moved), soil * self.stiffness * depth)
+            } else {
+                (ContactStatus::Open, 0.0)
+            };
         }
         let (normal, along) = self.pushed(moved);
         let limit = self.limit(normal.max(0.0));
-        match self.grip {
-            _ if normal < -force => (Grip::Open, -normal),
-            Grip::Stick if size(along) > limit + force => {
-                (Grip::Slip(along.map(|part| part / size(along))), size(along) - limit)
+        match self.status {
+            _ if normal < -force => (ContactStatus::Open, -normal),
+            ContactStatus::Stick if size(along) > limit + force => {
+                (ContactStatus::Slip(along.map(|part| part / size(along))), size(along) - limit)
             }
-            Grip::Slip(towards) if towards != [0.0; 2] => self.rubbed_on(towards, moved, (limit, force)),
-            grip => (grip, 0.0),
+            ContactStatus::Slip(towards) if towards != [0.0; 2] => self.slip_on(towards, moved, (limit, force)),
+            status => (status, 0.0),
         }
     }
 
     /// As [`Self::corrected`] of what slides.
-    fn rubbed_on(&self, towards: Along, moved: &Vector<D>, (limit, force): (f64, f64)) -> (Grip, f64) {
+    fn slip_on(&self, towards: Along, moved: &Vector<D>, (limit, force): (f64, f64)) -> (ContactStatus, f64) {
         let (soil, held) = (1.0 / super::PENALTY, self.held(moved));
         let against = product(towards, held);
         let sticks = if D == 2 { against < limit - force } else { size(held) < limit - force || against <= 0.0 };
         if sticks {
-            return (Grip::Stick, soil * (limit - against));
+            return (ContactStatus::Stick, soil * (limit - against));
         }
         // On a line there is nothing to turn.
         if D == 2 {
-            return (self.grip, 0.0);
+            return (self.status, 0.0);
         }
         let now = held.map(|part| part / size(held));
-        let (_, rubbed) = self.pushed(moved);
-        let off = (rubbed[0] - limit * now[0]).hypot(rubbed[1] - limit * now[1]);
-        if off > TURNED * limit + force { (Grip::Slip(now), off) } else { (self.grip, 0.0) }
+        let (_, friction_force) = self.pushed(moved);
+        let off = (friction_force[0] - limit * now[0]).hypot(friction_force[1] - limit * now[1]);
+        if off > TURNED * limit + force { (ContactStatus::Slip(now), off) } else { (self.status, 0.0) }
     }
 
     /// Row-major square of the symmetric part of its stiffness, D unknowns for each node of the cell.

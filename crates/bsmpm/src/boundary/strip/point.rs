@@ -33,7 +33,7 @@ pub(super) struct StripPoint<const D: usize> {
     pub(super) normal: Option<Vector<D>>,
     pub(super) motion: Vector<D>,
     pub(super) carried: Vector<D>,
-    pub(super) grip: Option<ContactState<D>>,
+    pub(super) state: Option<ContactState<D>>,
 }
 
 impl<const D: usize> StripPoint<D> {
@@ -45,8 +45,8 @@ impl<const D: usize> StripPoint<D> {
     /// The part of a vector that is held.
     pub(super) fn part(&self, vector: Vector<D>) -> Vector<D> {
         let own = self.own(vector);
-        if let Some(grip) = &self.grip {
-            return self.own(grip.part(&own));
+        if let Some(state) = &self.state {
+            return self.own(state.part(&own));
         }
         self.normal.map_or(own, |normal| self.own(normal * normal.dot(&own)))
     }
@@ -66,19 +66,19 @@ impl<const D: usize> StripPoint<D> {
     }
 
     /// Pa  elastic trial of a point in contact.
-    pub(super) fn trial(&self, grip: &ContactState<D>, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        self.own(grip.start(&self.carried) + (self.motion - self.displacement(offsets, u)) * self.penalty)
+    pub(super) fn trial(&self, state: &ContactState<D>, offsets: &[usize], u: &[f64]) -> Vector<D> {
+        self.own(state.start(&self.carried) + (self.motion - self.displacement(offsets, u)) * self.penalty)
     }
 
     /// Pa  on the body at the start of the step.
     pub(super) fn before(&self) -> Vector<D> {
-        self.own(self.grip.map_or(self.carried, |grip| grip.before(&self.carried)))
+        self.own(self.state.map_or(self.carried, |state| state.before(&self.carried)))
     }
 
     /// Pa  on the body.
     pub(super) fn traction(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        if let Some(grip) = &self.grip {
-            return self.own(grip.traction(&self.trial(grip, offsets, u)));
+        if let Some(state) = &self.state {
+            return self.own(state.traction(&self.trial(state, offsets, u)));
         }
         self.own(self.carried) + self.slip(offsets, u) * self.penalty
     }
@@ -87,8 +87,8 @@ impl<const D: usize> StripPoint<D> {
     /// which it is on it, as a part of the whole.
     pub(super) fn mean(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
         let mean = (self.before() + self.traction(offsets, u)) * (0.5 * self.area);
-        match &self.grip {
-            Some(grip) => mean * grip.share(&self.own(self.carried), &self.trial(grip, offsets, u)),
+        match &self.state {
+            Some(state) => mean * state.share(&self.own(self.carried), &self.trial(state, offsets, u)),
             None => mean,
         }
     }
@@ -98,15 +98,16 @@ impl<const D: usize> StripPoint<D> {
     pub(super) fn lengths(&self, offsets: &[usize], u: &[f64], edge: f64, sums: &mut StripSums) -> [f64; LENGTHS] {
         let (motion, after) = (self.part(self.motion).norm(), self.traction(offsets, u));
         let (slip, accumulated) = (self.slip(offsets, u).norm(), after.norm() / self.penalty);
-        let Some(grip) = &self.grip else { return [slip, accumulated, motion, 0.0, 0.0] };
-        let trial = self.trial(grip, offsets, u);
-        let (slid, gap) = (self.own(grip.slid(&trial, self.penalty)), grip.gap(&trial, self.penalty));
-        let pushed = grip.pressure(&trial).max(0.0) * self.area;
+        let Some(state) = &self.state else { return [slip, accumulated, motion, 0.0, 0.0] };
+        let trial = self.trial(state, offsets, u);
+        let (slid, gap) = (self.own(state.slid(&trial, self.penalty)), state.gap(&trial, self.penalty));
+        let pushed = state.pressure(&trial).max(0.0) * self.area;
         let flag = |is: bool| f64::from(u8::from(is));
-        let far = grip.moved_on(&self.carried, self.penalty) > FAR * edge;
-        let rubbed = self.mean(offsets, u).dot(&slid);
+        let far = state.moved_on(&self.carried, self.penalty) > FAR * edge;
+        let friction_work = self.mean(offsets, u).dot(&slid);
         let sliding = if slid.norm() > 0.0 { pushed } else { 0.0 };
-        let each = [flag(grip.status != Status::Open), pushed, sliding, pushed * slid.norm(), rubbed, flag(far)];
+        let each =
+            [flag(state.status != Status::Open), pushed, sliding, pushed * slid.norm(), friction_work, flag(far)];
         sums.contact.iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
         [slip, accumulated, motion, -gap, gap]
     }
@@ -124,7 +125,7 @@ impl<const D: usize> StripPoint<D> {
 
     /// Dense block of beta A N_a N_b in the held direction, over the nodes of the cell.
     pub(super) fn block(&self, size: usize) -> Option<(usize, Vec<f64>)> {
-        if self.grip.is_some_and(|grip| grip.status == Status::Open) {
+        if self.state.is_some_and(|state| state.status == Status::Open) {
             return None;
         }
         let first = self.attachment.iter().flatten().next()?.first_node();

@@ -10,7 +10,7 @@ use crate::real::Real;
 /// Vectors, one a row.
 pub(super) type Rows<R> = [[R; 3]; 3];
 
-/// Distance of b from I up to which its eigenvalues are told from 1, which loses no digit there.
+/// Distance of b from I up to which its eigenvalues are distinguished from 1, which loses no digit there.
 const NEAR: f64 = 0.5;
 /// Below this a deviator counts as none: its squares would lose digits.
 const NONE: f64 = 1e-140;

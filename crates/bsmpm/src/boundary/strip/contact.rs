@@ -1,4 +1,4 @@
-//! The law at a point of a strip that the material rubs along and comes off.
+//! The law at a point of a strip that the material slides along and separates from.
 
 use crate::boundary::coulomb::{Contact, Status, transverse};
 use crate::tensor::Vector;
@@ -9,7 +9,7 @@ const TURNED: f64 = 100.0;
 
 /// Contact of a strip.
 ///
-#[doc = include_str!("grip.md")]
+#[doc = include_str!("contact.md")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripContact<const D: usize> {
     /// friction, and whether material comes off it
@@ -19,7 +19,7 @@ pub struct StripContact<const D: usize> {
 }
 
 /// The law at a point, and what the point does in a step. Friction is along the unit vector of [`Status::Slip`], which
-/// is zero where nothing rubs.
+/// is zero where there is no friction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactState<const D: usize> {
     contact: StripContact<D>,
@@ -43,7 +43,7 @@ impl<const D: usize> StripContact<D> {
 }
 
 impl<const D: usize> ContactState<D> {
-    /// At the start of a step, as far as what is `carried` tells.
+    /// At the start of a step, as far as what is `carried` reports.
     pub fn of(contact: StripContact<D>, carried: &Vector<D>) -> Self {
         let open_before = contact.is_open(carried);
         let closed = if contact.law.friction == 0.0 { Status::Slip(Vector::zeros()) } else { Status::Stick };
@@ -195,8 +195,8 @@ impl<const D: usize> ContactState<D> {
             Status::Slip(along) if along.norm_squared() > 0.0 => {
                 let shear = trial - self.normal(trial);
                 let limit = self.limit(pressure);
-                let rubbed = self.traction(trial) - self.normal(trial);
-                let is_off = |now: Vector<D>| (rubbed - now * limit).norm() > TURNED * doubt;
+                let friction_force = self.traction(trial) - self.normal(trial);
+                let is_off = |now: Vector<D>| (friction_force - now * limit).norm() > TURNED * doubt;
                 match shear.dot(&along) {
                     _ if pressure < -doubt => Status::Slip(Vector::zeros()),
                     // Whoever slid against friction has to stick first: to turn it at once goes back and forth for

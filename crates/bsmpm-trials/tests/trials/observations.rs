@@ -1,5 +1,5 @@
-//! What is told of parts, lines and places: the closed forms of a column at rest, the same on any number of ranks and
-//! however a run is cut.
+//! What is reported of parts, lines and places: the closed forms of a column at rest, the same on any number of ranks
+//! and however a run is cut.
 
 use crate::support::Scratch;
 use crate::support::results::{all_finite, at, differences, history, last_frame, manifest};
@@ -163,8 +163,8 @@ fn parts_lines_and_places_of_a_column_have_its_weight_on_any_ranks_and_after_a_r
     // Times of its own; what is above the body is left out.
     let window = table::read(&one.join("profile_window.csv")).unwrap();
     assert_eq!(window.get("time").unwrap(), [[0.55; 4], [1.0; 4]].as_flattened());
-    let told = manifest(&one);
-    assert!(TABLES.iter().all(|file| told.outputs.iter().any(|of| of.path == *file && of.blake3.is_some())));
+    let reported = manifest(&one);
+    assert!(TABLES.iter().all(|file| reported.outputs.iter().any(|of| of.path == *file && of.blake3.is_some())));
 
     for ranks in [3, 1] {
         let name = goes_the_same_way(&scratch, &TABLES, (ranks, 1e-8));
@@ -197,7 +197,7 @@ fn frames_have_the_fields_that_are_asked_for_with_names_of_bodies() {
         assert!(if body == 0 { mobilised[p] == 0.0 } else { excess.abs() < 1e-3 * yy.abs() });
     }
     assert!(real("yielding", 1).iter().all(|&yielding| yielding == 0.0));
-    let told = manifest(&scratch.path("asked"));
-    assert_eq!(told.frame_names["body"], ["base", "", "top"]);
-    assert_eq!(told.frame_names["material"], ["soil", "rock"]);
+    let reported = manifest(&scratch.path("asked"));
+    assert_eq!(reported.frame_names["body"], ["base", "", "top"]);
+    assert_eq!(reported.frame_names["material"], ["soil", "rock"]);
 }

@@ -1,9 +1,9 @@
-//! What is told of lines, places and sections in a solid: the closed forms of a block at rest and of a bar that bends
-//! and twists, the same on any number of ranks and however a run is cut.
+//! What is reported of lines, places and sections in a solid: the closed forms of a block at rest and of a bar that
+//! bends and twists, the same on any number of ranks and however a run is cut.
 
+use super::observations::goes_the_same_way;
 use super::solid::{PLANE, slice};
 use super::solid_loads::BAR;
-use super::told_parts::goes_the_same_way;
 use crate::support::Scratch;
 use crate::support::cases::changed;
 use crate::support::results::{all_finite, all_frames, at, history, manifest};
@@ -122,7 +122,7 @@ fn lines_and_places_of_a_block_have_its_weight_on_any_ranks_and_after_a_restart(
     }
 }
 
-/// A cantilever of 2 m by .5 m by .5 m of 20 N/m3 that a couple of strips along the edges of its end twists.
+/// A cantilever of 2 m by 0.5 m by 0.5 m of 20 N/m3 that a couple of strips along the edges of its end twists.
 #[test]
 fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
     let (edge, length, unit_weight, stress, cell) = (0.5_f64, 2.0, 20.0, 100.0, 0.125);
@@ -136,7 +136,7 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
     let loads = strips.map(|(lower, upper, stress)| {
         format!("[[traction]]\nrectangle = {{ lower = {lower}, upper = {upper} }}\nstress = {stress:?}\nramp = 1.0\n")
     });
-    let told = [(0.5, "goes"), (1.1, "middle"), (0.5, "stays")].map(|(x, name)| {
+    let reported = [(0.5, "goes"), (1.1, "middle"), (0.5, "stays")].map(|(x, name)| {
         let fixed = name == "stays";
         format!(
             "[[history]]\nquantity = \"section-forces\"\nname = \"{name}\"\nfixed = {fixed}\n\
@@ -145,7 +145,7 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
     });
     let gravity = "[gravity]\nacceleration = [0, 0, -9.81]\nramp = 1.0\n";
     let bar = changed(BAR, "poisson = 0.3\n", &format!("poisson = 0.3\nunit_weight = \"{unit_weight} N/m3\"\n"));
-    let scratch = Scratch::with_case(&format!("{bar}{gravity}{}{}", loads.concat(), told.concat()));
+    let scratch = Scratch::with_case(&format!("{bar}{gravity}{}{}", loads.concat(), reported.concat()));
     scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
     let rows = history(&scratch.path("one"));
     let per_length = unit_weight * edge * edge;
@@ -156,7 +156,7 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
         let off = [of("q2") / -shear - 1.0, of("t") / couple - 1.0, (of("m2") - moment) / moment];
         let others = [of("n") / shear, of("q1") / shear, of("m1") / moment];
         println!("{name}: Q, T, M off by {off:?}; N, Q1, M1 {others:?}");
-        // The cut is smeared: M is too large by .16 w h^2.
+        // The cut is smeared: M is too large by 0.16 w h^2.
         assert!(off[0].abs() < 2e-3 && off[1].abs() < 2e-3 && off[2].abs() < 4e-3, "{off:?}");
         assert!(others.iter().all(|other| other.abs() < 2e-3), "{others:?}");
     }
@@ -220,8 +220,12 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
                 expected.push((format!("mean-displacement-{name}"), along, 0.1));
             }
             for (name, expected, scale) in expected {
-                let told = at(&rows, &format!("{}-{name}", of.0), frame.time);
-                assert!((told - expected).abs() <= 1e-11 * scale, "{dims}, {} {name}: {told} for {expected}", of.0);
+                let reported = at(&rows, &format!("{}-{name}", of.0), frame.time);
+                assert!(
+                    (reported - expected).abs() <= 1e-11 * scale,
+                    "{dims}, {} {name}: {reported} for {expected}",
+                    of.0
+                );
             }
         }
         println!("{dims} axes: points in boxes {counts:?}");

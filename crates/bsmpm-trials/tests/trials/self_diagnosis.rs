@@ -1,4 +1,4 @@
-//! What a run tells of itself that nobody asked for: what holds it pulls, the background carries it, its front goes
+//! What a run reports of itself that nobody asked for: what holds it pulls, the background carries it, its front goes
 //! back; and what every such line says to do.
 
 use crate::support::cases::changed;
@@ -49,7 +49,7 @@ name = "side"
 
 #[test]
 fn the_reaction_to_a_stress_at_the_start_is_there_before_the_first_step() {
-    // k0 leaves what the points' quadrature of a linear stress does: .7 % in four cells of depth.
+    // k0 leaves what the points' quadrature of a linear stress does: 0.7 % in four cells of depth.
     for (initial, off) in [("gravity = \"elastic\"", 1e-8), ("k0 = 0.5", 0.01)] {
         let scratch = Scratch::with_case(&format!("{LAYER}\n[initial]\n{initial}\n"));
         scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
@@ -62,7 +62,7 @@ fn the_reaction_to_a_stress_at_the_start_is_there_before_the_first_step() {
 }
 
 #[test]
-fn a_body_that_hangs_on_a_face_is_told_and_one_that_lies_on_it_is_not() {
+fn a_body_that_hangs_on_a_face_is_reported_and_one_that_lies_on_it_is_not() {
     let scratch = Scratch::with_case(LAYER);
     let lies = scratch.direct(&["case.toml"]).expect(0);
     assert!(!lies.stderr.contains("unusual: support-pull"), "{}", lies.stderr);
@@ -75,21 +75,21 @@ fn a_body_that_hangs_on_a_face_is_told_and_one_that_lies_on_it_is_not() {
 
 /// A layer of one cell slides on a fixed base: its points keep a velocity that is not their motion.
 #[test]
-fn velocities_beside_a_fixed_face_that_are_no_motion_are_told() {
+fn velocities_beside_a_fixed_face_that_are_no_motion_are_reported() {
     let case = std::fs::read_to_string(shipped("validation/sliding_layer.toml")).unwrap();
-    for (mass, told) in [("lumped", true), ("consistent", false)] {
+    for (mass, reported) in [("lumped", true), ("consistent", false)] {
         let scratch = Scratch::with_case(&case);
         let mass = format!("analysis.mass={mass}");
         scratch.mpirun(2, &["case.toml", "-q", "--set", "analysis.end=0.03", "--set", &mass]).expect(0);
         let found = &manifest(&scratch.path("case.out")).indicators["wall-velocity"];
         println!("{mass}: {}", found.value);
-        assert!(found.unusual == told && !found.advice.is_empty(), "{mass}: {found:?}");
+        assert!(found.unusual == reported && !found.advice.is_empty(), "{mass}: {found:?}");
     }
 }
 
 /// A background as stiff as the body carries half of it.
 #[test]
-fn a_background_that_carries_the_body_is_told() {
+fn a_background_that_carries_the_body_is_reported() {
     let scratch = Scratch::with_case(LAYER);
     scratch.direct(&["case.toml", "-q"]).expect(0);
     let usual = manifest(&scratch.path("case.out")).indicators["background-work"].clone();
@@ -105,9 +105,9 @@ fn a_background_that_carries_the_body_is_told() {
     assert!(!manifest(&none.path("case.out")).indicators.contains_key("background-work"));
 }
 
-/// Sand whose gaps close: at .3565 s the tip thins out to less than half a cell.
+/// Sand whose gaps close: at 0.3565 s the tip thins out to less than half a cell.
 #[test]
-fn a_front_that_goes_back_is_told_with_what_to_do() {
+fn a_front_that_goes_back_is_reported_with_what_to_do() {
     let case = std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap();
     let scratch = Scratch::with_case(&changed(
         &case,
@@ -123,8 +123,8 @@ fn a_front_that_goes_back_is_told_with_what_to_do() {
         "--set",
         "check=[]",
     ];
-    let told = scratch.direct(&[&set[..], &["--set", "output.times=[]"]].concat()).expect(0);
-    assert!(told.stderr.contains("unusual: front-setback"), "{}", told.stderr);
+    let reported = scratch.direct(&[&set[..], &["--set", "output.times=[]"]].concat()).expect(0);
+    assert!(reported.stderr.contains("unusual: front-setback"), "{}", reported.stderr);
     let manifest = manifest(&scratch.path("case.out"));
     assert!(manifest.indicators["front-setback"].value > 0.015);
     // The end is a frame, and no time is singled out for pictures.
@@ -136,9 +136,9 @@ fn a_front_that_goes_back_is_told_with_what_to_do() {
 fn the_advice_on_an_elastic_start_is_not_to_make_one() {
     let weak = changed(LAYER, "model       = \"elastic\"", "model       = \"tresca\"\ncohesion    = \"0.5 kPa\"");
     let scratch = Scratch::with_case(&format!("{weak}\n[initial]\ngravity = \"elastic\"\n"));
-    let told = scratch.direct(&["case.toml", "--max-steps", "1"]);
-    let line = told.stderr.lines().find(|line| line.contains("unbalanced")).unwrap_or_default();
-    assert!(line.contains("ramp") && !line.contains("gravity = \"elastic\""), "{}", told.stderr);
+    let reported = scratch.direct(&["case.toml", "--max-steps", "1"]);
+    let line = reported.stderr.lines().find(|line| line.contains("unbalanced")).unwrap_or_default();
+    assert!(line.contains("ramp") && !line.contains("gravity = \"elastic\""), "{}", reported.stderr);
 }
 
 /// Four layers that lie on each other are as thick as one body of their height: smoothing along 0.25 m is usual in
