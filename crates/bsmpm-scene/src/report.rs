@@ -254,12 +254,11 @@ impl<'a> KeyCounts<'a> {
         counts
     }
 
-    /// Number of paths that are this one, a part of it, or what it is a part of.
+    /// Number of paths that are this one, a part of it, or the table of the file that it is in.
     fn concerned(&self, path: &str) -> usize {
         let count = |counts: &HashMap<&str, usize>, path: &str| counts.get(path).copied().unwrap_or(0);
-        count(&self.whole, path)
-            + count(&self.beginning, path)
-            + beginnings(path).map(|part| count(&self.whole, part)).sum::<usize>()
+        let table = beginnings(path).next();
+        count(&self.whole, path) + count(&self.beginning, path) + table.map_or(0, |table| count(&self.whole, table))
     }
 }
 

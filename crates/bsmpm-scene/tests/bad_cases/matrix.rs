@@ -45,7 +45,7 @@ const MATRIX: &[Input] = &[
     },
     Input {
         id: "I04",
-        refused: &[row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "no valid TOML: duplicate key").down(1)],
+        refused: &[row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "`poisson` is given twice, here and in line 19").down(1)],
         ..NONE
     },
     Input {
@@ -210,8 +210,8 @@ const MATRIX: &[Input] = &[
             ),
         ],
         refused_static: &[
-            row("bottom = \"fixed\"", "", "boundary", "nothing holds the bodies along x").up(1),
-            row("bottom = \"fixed\"", "bottom = \"roller\"", "boundary", "a quasi-static analysis is singular then")
+            row("bottom = \"fixed\"", "", "boundary", "no support holds the bodies along x").up(1),
+            row("bottom = \"fixed\"", "bottom = \"roller\"", "boundary", "a quasi-static analysis has no solution")
                 .up(1),
         ],
         ..NONE
@@ -325,7 +325,7 @@ const MATRIX: &[Input] = &[
             ),
             row("\"2 t/m3\"", "1e308", "material.sand.density", "a density is at most 1e9 in SI"),
         ],
-        taken: &[("-9.81]", "-1e12]", ""), ("density  = \"2 t/m3\"", "density = 1e9", "is unusual: check the unit")],
+        taken: &[("-9.81]", "-1e12]", ""), ("density  = \"2 t/m3\"", "density = 1e9", "W0108: material.sand: 1000000000.000 kg/m3")],
         ..NONE
     },
     Input {
@@ -338,12 +338,12 @@ const MATRIX: &[Input] = &[
         )
         .down(1)],
         taken: &[
-            (YOUNG, "20", "material.sand: young = 2e1 Pa = 2e-2 kPa is unusual: check the unit"),
+            (YOUNG, "20", "W0101: material.sand.young: 20 Pa is 0.02 kPa"),
             (YOUNG, "\"20000 GPa\"", "check the unit"),
             (
                 "\"18 kN/m3\"",
                 "18",
-                "material.clay: a density of 1.834862 kg/m3 (unit weight 0.018000 kN/m3) is unusual",
+                "W0108: material.clay: 1.835 kg/m3, a unit weight of 0.018 kN/m3",
             ),
         ],
         ..NONE

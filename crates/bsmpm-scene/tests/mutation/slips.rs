@@ -76,8 +76,8 @@ fn one_slip_gives_one_error() {
             let errors = errors(&slip.text);
             counts.entry(slip.kind).or_default()[errors.len().min(2)] += 1;
             if errors.len() > 1 {
-                let told: String = errors.iter().map(|error| format!("\n   {error}")).collect();
-                several.push(format!("{}: {}{told}", slip.kind, slip.path));
+                let reported: String = errors.iter().map(|error| format!("\n   {error}")).collect();
+                several.push(format!("{}: {}{reported}", slip.kind, slip.path));
             }
         }
     }

@@ -9,7 +9,7 @@ use std::path::Path;
 fn no_run_of_the_validation_looks_like_a_slip() {
     let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/validation");
     let matrix = ValidationMatrix::read(&base.join("matrix.toml")).expect("the matrix can be read");
-    let (mut read, mut told) = (0, Vec::new());
+    let (mut read, mut found) = (0, Vec::new());
     for study in &matrix.study {
         for run in &study.run {
             let path = base.join(run.case.as_ref().unwrap_or(&study.case));
@@ -18,10 +18,10 @@ fn no_run_of_the_validation_looks_like_a_slip() {
             let case = Case::from_bytes(&name, &bytes, &[&study.set[..], &run.set].concat());
             let case = case.unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
             let slips = case.warnings.iter().filter(|text| code_of(text).is_some_and(|code| code.starts_with("W01")));
-            told.extend(slips.map(|slip| format!("{name}: {slip}")));
+            found.extend(slips.map(|slip| format!("{name}: {slip}")));
             read += 1;
         }
     }
     assert!(read > 100, "{read} runs");
-    assert!(told.is_empty(), "{}", told.join("\n"));
+    assert!(found.is_empty(), "{}", found.join("\n"));
 }
