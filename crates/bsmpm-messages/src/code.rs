@@ -57,9 +57,17 @@ pub fn headed(message: &str, otherwise: &str) -> String {
     }
 }
 
+/// A message with the place that it concerns between its code and its words.
+pub fn with_context(message: &str, context: &str) -> String {
+    match code_of(message) {
+        Some(code) => format!("{code}: {context}: {}", without_code(message)),
+        None => format!("{context}: {message}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{code_of, headed, without_code};
+    use super::{code_of, headed, with_context, without_code};
 
     #[test]
     fn a_code_is_a_letter_and_four_digits_before_a_colon() {
@@ -69,6 +77,8 @@ mod tests {
             assert_eq!(without_code(other), other);
         }
         assert_eq!(without_code("W0112: boundary"), "boundary");
+        assert_eq!(with_context("W0112: boundary", "left"), "W0112: left: boundary");
+        assert_eq!(with_context("boundary", "left"), "left: boundary");
     }
 
     #[test]

@@ -4,5 +4,5 @@
 mod code;
 mod page;
 
-pub use code::{Kind, code_of, headed, without_code};
+pub use code::{Kind, code_of, headed, with_context, without_code};
 pub use page::{Page, catalogue, page, pages, texts};

@@ -38,7 +38,10 @@ fn in_table(written: &mut DocumentTable, table: &'static Table, path: &str, repo
             && let Some(key) = table.renamed(&entry.key)
         {
             if is_given(key.name) {
-                let message = format!("is the earlier name of `{}`, which is given too. Delete one of them.", key.name);
+                let message = format!(
+                    "E0016: this is the earlier name of `{}`, which is given too. Delete one of them.",
+                    key.name
+                );
                 report.error(entry.origin, &path, message);
                 return false;
             }

@@ -2,6 +2,7 @@
 //! program chose by itself.
 
 use crate::words::RemovedWord;
+use bsmpm_messages::{code_of, without_code};
 use std::fmt;
 
 /// Where a value or key was written. Orders as a report lists: the file from its start, then overrides.
@@ -62,6 +63,21 @@ pub struct Error {
     pub removed: Option<&'static RemovedWord>,
     /// The line of the file, shortened around the place, and the characters before the mark.
     pub(crate) excerpt: Option<(String, usize)>,
+}
+
+impl Error {
+    /// An error of a file as a whole. `message` begins with its code.
+    pub(crate) fn of_file(file: &str, message: &str) -> Self {
+        Self {
+            file: file.to_owned(),
+            place: Place::File,
+            key: String::new(),
+            code: code_of(message).map(str::to_owned),
+            message: without_code(message).to_owned(),
+            removed: None,
+            excerpt: None,
+        }
+    }
 }
 
 impl fmt::Display for Error {

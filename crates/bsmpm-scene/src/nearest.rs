@@ -1,5 +1,7 @@
 //! The nearest known name to a mistyped one.
 
+use crate::report::shortened;
+
 /// The known name that `word` most likely means: few edits away, case and `_`/`-` being equal. `None` if none is near.
 pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     const LONGEST: usize = 64;
@@ -16,6 +18,15 @@ pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) 
 /// `; did you mean ...?`, or nothing.
 pub(crate) fn hint<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     nearest(word, known).map_or(String::new(), |name| format!("; did you mean `{name}`?"))
+}
+
+/// The error of a `name` that nothing of a `kind` has, with the nearest one of the `known` names.
+pub(crate) fn unknown_name<'a>(kind: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let written = shortened(name);
+    match nearest(name, known) {
+        Some(near) => format!("E0612: there is no {kind} with the name `{written}`; did you mean `{near}`?"),
+        None => format!("E0612: there is no {kind} with the name `{written}`. Correct the name."),
+    }
 }
 
 fn folded(word: &str) -> String {

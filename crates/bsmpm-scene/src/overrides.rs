@@ -17,12 +17,17 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
     for (number, text) in overrides.iter().enumerate() {
         let origin = Origin::Override(number);
         let Some((key, value)) = text.split_once('=') else {
-            report.error(origin, "", "expected KEY=VALUE");
+            report.error(origin, "", "E0025: the override has no `=`. Write KEY=VALUE, such as grid.cell=0.5.");
             continue;
         };
         let parts: Vec<&str> = key.split('.').map(str::trim).collect();
         if parts.len() > DEEPEST || parts.iter().any(|part| part.is_empty()) {
-            report.error(origin, key.trim(), "no key path; expected e.g. grid.cell or body.0.points_per_cell");
+            report.error(
+                origin,
+                key.trim(),
+                "E0025: this is not the path of a key. Write names and numbers with points between them, such as \
+                 body.0.points_per_cell.",
+            );
             continue;
         }
         match parsed(value.trim(), origin) {
@@ -36,7 +41,11 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
                     report.error(origin, key.trim(), message);
                 }
             }
-            Err(message) => report.error(origin, key.trim(), format!("no valid TOML: {message}")),
+            Err(message) => report.error(
+                origin,
+                key.trim(),
+                format!("E0025: the value cannot be read: {message}. Check its brackets and quotes."),
+            ),
         }
     }
 }
@@ -131,10 +140,16 @@ impl<'a> Setting<'a> {
                     return items.iter_mut().try_for_each(|item| self.in_value(item, schema, depth + 1));
                 }
                 let index: usize = part.parse().map_err(|_| {
-                    format!("`{}` is no index of a list, which counts its {length} items from 0", shortened(part))
+                    format!(
+                        "E0026: `{}` is not the number of an item. The list has {length} items, numbered from 0.",
+                        shortened(part)
+                    )
                 })?;
                 if index > length {
-                    return Err(format!("index {index} is beyond the list of {length}"));
+                    return Err(format!(
+                        "E0026: the list has no item {index}: it has {length} items, numbered from 0. Use {length} to \
+                         add one."
+                    ));
                 }
                 if index == length {
                     let value = if last { self.node.value.clone() } else { Value::Table(DocumentTable::default()) };
@@ -146,7 +161,10 @@ impl<'a> Setting<'a> {
                 }
                 self.in_value(&mut items[index], schema, depth + 1)
             }
-            _ => Err(format!("`{}` lies in {shown}, which is no table", shortened(part))),
+            _ => Err(format!(
+                "E0026: `{}` cannot be set, because the value that should contain it is {shown}, not a table.",
+                shortened(part)
+            )),
         }
     }
 }

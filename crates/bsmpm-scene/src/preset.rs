@@ -15,7 +15,7 @@ mod waves;
 use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
 use crate::error::Origin;
 use crate::record;
-use crate::report::Report;
+use crate::report::{Report, brief};
 use crate::schema::ROOT;
 use crate::source::Source;
 use crate::words::{Accuracy, Geometry, Order, Word};
@@ -103,7 +103,7 @@ impl Preset {
 /// that iterations stall.
 const GRADED_POINTS: u64 = 3;
 
-/// Cells across the thinnest body below which a warning is reported.
+/// Cells across the thinnest body below which there is a warning.
 const FEWEST: f64 = 2.0;
 
 /// Of every preset: splines of this order, and where a material could lock this against it.
@@ -116,6 +116,14 @@ struct Choice {
     key: &'static str,
     word: &'static str,
     origin: Origin,
+}
+
+impl Choice {
+    /// Of a key that depends on something that the case does not give.
+    fn cannot_choose(&self, key: &str, basis: &str) -> String {
+        let word = self.word;
+        format!("E0253: \"{word}\" cannot choose {key}, which depends on {basis}. Complete these, or give {key}.")
+    }
 }
 
 /// Fills in what the document's purpose and `accuracy` stand for, in this order; whether anything was. What cannot be
@@ -146,7 +154,8 @@ fn fill_accuracy(
     // Its errors are reported when the filled document is read.
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     if record.word("geometry") == Some(Geometry::Solid) {
-        let message = "not available in 3-D yet: give cells, points, steps and tolerances";
+        let message =
+            "E0226: presets are not available in 3-D. Give the cells, points_per_cell, the steps and the tolerances.";
         report.error(choice.origin, ACCURACY, message);
         return false;
     }
@@ -160,10 +169,15 @@ fn fill_accuracy(
         Some((steps, why)) => {
             filling.put("analysis", &["steps", "dt"], &steps.to_string(), &why);
         }
-        None if cells.is_some() || scene.shortest().is_some() => {
-            filling.miss("analysis", &["steps", "dt"], scene::STEPS)
+        None if scene.is_consolidation() => {
+            let message = "E0254: presets cannot choose the steps of a consolidation analysis. Give dt and growth.";
+            filling.miss("analysis", &["steps", "dt"], message.into());
         }
-        None => {} // reported already
+        None if cells.is_some() || scene.shortest().is_some() => {
+            let message = choice.cannot_choose("analysis.steps", scene::STEPS);
+            filling.miss("analysis", &["steps", "dt"], message);
+        }
+        None => {} // an error of the cells
     }
     if let Some(why) = scene.locks() {
         filling.put("stabilisation", &["method"], &quoted(METHOD), why);
@@ -174,13 +188,16 @@ fn fill_accuracy(
     let filled = filling.filled;
     if filled && record.records("rigid").iter().any(|rigid| rigid.gives("free")) {
         report.warn(format!(
-            "{ACCURACY}: it knows no way of rigid bodies that are free: give [grid] cells that are small beside them, and \
-             steps in which they go a small part of one"
+            "W0201: {ACCURACY}: the motion of free rigid bodies is not known in advance, so steps may be too long. Check \
+             that they move less than a cell in a step."
         ));
     }
     // With a purpose every key may be given because the purpose has filled it in.
     if !filled && !scene.seeks_limit_load() {
-        report.warn(format!("{ACCURACY}: every key that it stands for is given; it does nothing"));
+        report.warn(format!(
+            "W0202: {ACCURACY}: all keys that it would choose are given, so it has no effect. Delete it, or some of \
+             them."
+        ));
     }
     // The document is complete: under another word it would still be this case.
     document.entries.retain(|entry| entry.key != ACCURACY);
@@ -226,16 +243,12 @@ impl Completion<'_, '_> {
         put
     }
 
-    /// Reports what the first of these keys of a table would follow from, unless one of them is given.
-    fn miss(&mut self, table: &str, keys: &[&str], basis: &str) {
+    /// Reports an error that no value can be chosen for these keys of a table, unless one of them is given.
+    fn miss(&mut self, table: &str, keys: &[&str], message: String) {
         let given = |table: &DocumentTable| keys.iter().any(|key| table.get(key).is_some());
         match self.document.get(table) {
             Some(DocumentEntry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
-            _ => {
-                let Choice { key, word, origin } = self.choice;
-                let reason = format!("\"{word}\" cannot choose {table}.{}, which follows from {basis}", keys[0]);
-                self.report.consequence(origin, key, reason, scene::BASIS);
-            }
+            _ => self.report.consequence(self.choice.origin, self.choice.key, message, scene::BASIS),
         }
     }
 
@@ -250,7 +263,7 @@ impl Completion<'_, '_> {
                     points = if cells.is_graded() { points.max(GRADED_POINTS) } else { points };
                 }
             }
-            None => self.miss("grid", &["cell", "knots"], cells::CELLS),
+            None => self.miss("grid", &["cell", "knots"], self.choice.cannot_choose("grid.cell", cells::CELLS)),
         }
         self.points(points);
     }
@@ -258,9 +271,12 @@ impl Completion<'_, '_> {
     /// Warns of a body whose shorter side (m) has too few cells of an edge (m).
     fn doubt(&mut self, thin: Option<(f64, f64)>) {
         if let Some((side, cell)) = thin {
-            let name = self.choice.word;
             self.report.warn(format!(
-                "{ACCURACY}: the cells of {cell} m of \"{name}\" are fewer than {FEWEST} across a body of {side} m; give grid.cell"
+                "W0203: {ACCURACY}: a body of {} m has fewer than {FEWEST} cells across ({} m each). Its stresses are \
+                 inaccurate. Set grid.cell to at most {} m.",
+                brief(side),
+                brief(cell),
+                brief(side / FEWEST)
             ));
         }
     }
@@ -280,7 +296,7 @@ impl Completion<'_, '_> {
             }
         }
         if any {
-            self.tell(&format!("body.*.{KEY}"), &value, "of bodies without their own");
+            self.tell(&format!("body.*.{KEY}"), &value, "of bodies without a value of their own");
         }
     }
 

@@ -46,7 +46,7 @@ impl Case {
         overrides::apply(&mut document, overrides, &mut report);
         earlier::replace(&mut document, &mut report);
         if document.entries.is_empty() && !report.failed() {
-            report.error(Origin::Nowhere, "", "the file is empty: it holds no key of a case");
+            report.error(Origin::Nowhere, "", "E0003: the file is empty or has only comments. Check its name.");
             return Err(report.into_errors());
         }
         slips::mend(&mut document, &mut report);

@@ -12,6 +12,8 @@ use crate::unit::Dimension;
 use crate::words::{AnalysisType, Geometry, Word};
 pub(crate) use value::UNREAD;
 
+/// Of a key of the language that this version does not have.
+const NOT_YET: &str = "E0012: this key is not available yet. Delete it.";
 /// Keys that the words of others stand for, and these others.
 const FILLED: &[&str] = &["cell", "knots", "degree", "points_per_cell", "steps", "dt", "method"];
 const FILLED_BY: &[&str] = &["accuracy", "analysis.purpose"];
@@ -121,10 +123,10 @@ impl Context {
         for key in table.keys {
             let path = join(path, key.name);
             match (written.get(key.name), key.presence) {
-                (Some(entry), Presence::Later) => report.error(entry.origin, &path, "not available yet"),
+                (Some(entry), Presence::Later) => report.error(entry.origin, &path, NOT_YET),
                 (Some(entry), Presence::Retired) => {
                     if self.datum(&key.kind, &entry.node, &path, report).is_some() {
-                        report.warn(format!("{path}: this key has no effect any more, as {}. Delete it.", key.doc));
+                        report.warn(format!("W0001: {path}: this key has no effect any more: {}. Delete it.", key.doc));
                     }
                 }
                 (Some(entry), _) => {
@@ -138,7 +140,7 @@ impl Context {
                     });
                 }
                 (None, Presence::Required) => {
-                    let message = format!("missing; it is {}", key.kind);
+                    let message = format!("E0014: this key is missing. Add it; its value is {}.", key.kind);
                     report.missing(origin, &record.path, &[key.name], message, filled_by(&[key.name]));
                     record.fields.push(RecordField::absent(key.name, origin, None));
                 }
@@ -164,7 +166,9 @@ impl Context {
         report: &mut Report<'_>,
     ) -> Option<Datum> {
         let Ok(node) = document::parse_value(text, origin) else {
-            report.error(origin, path, format!("the default {text} is no TOML: a mistake of the program"));
+            let message =
+                format!("E0099: the default value `{text}` cannot be read. Report this defect of the program.");
+            report.error(origin, path, message);
             return None;
         };
         let listed = path.split('.').any(|part| part.starts_with(|c: char| c.is_ascii_digit()));
@@ -183,7 +187,7 @@ impl Context {
             (Kind::Named(table), Value::Table(written)) => Some(self.named(table, written, path, report)),
             (Kind::Tables(table), Value::List(items)) => self.records(table, items, path, report),
             (Kind::Table(_) | Kind::Named(_) | Kind::Tables(_), _) => {
-                report.error(node.origin, path, format!("expected {kind}, found {}", node.show()));
+                report.error(node.origin, path, value::expected(kind, node));
                 None
             }
             _ => value::read(kind, node, path, (self.pseudo_time, self.geometry), report),
@@ -195,15 +199,14 @@ impl Context {
         for entry in &written.entries {
             let path = join(path, &entry.key);
             if !value::is_name(&entry.key) {
-                report.error(entry.origin, &path, format!("the name must be {}", Kind::Name));
+                report.error(entry.origin, &path, format!("E0024: this name is not allowed. Use {}.", Kind::Name));
             }
             match &entry.node.value {
                 Value::Table(inner) => {
                     named.push((entry.key.clone(), self.record(table, inner, entry.origin, &path, report)));
                 }
                 _ => {
-                    let message = format!("expected a table, {}, found {}", table.header, entry.node.show());
-                    report.error(entry.origin, &path, message);
+                    report.error(entry.origin, &path, value::expected(&Kind::Table(table), &entry.node));
                 }
             }
         }
@@ -216,13 +219,7 @@ impl Context {
             let path = join(path, &number.to_string());
             match &item.value {
                 Value::Table(written) => records.push(self.record(table, written, item.origin, &path, report)),
-                _ => {
-                    report.error(
-                        item.origin,
-                        &path,
-                        format!("expected a table, {}, found {}", table.header, item.show()),
-                    );
-                }
+                _ => report.error(item.origin, &path, value::expected(&Kind::Table(table), item)),
             }
         }
         (records.len() == items.len()).then_some(Datum::Records(records))
@@ -256,13 +253,17 @@ fn exclusive<'a>(
         && !reported.pairs.contains(&[&first.key, &second.key])
     {
         reported.pairs.push([&first.key, &second.key]);
-        let message = format!("`{}` is given too; only one of {} may be", first.key, group.keys.join(", "));
+        let message = format!(
+            "E0016: `{}` is given too, but only one of the keys {} is allowed. Delete one of them.",
+            first.key,
+            group.keys.join(", ")
+        );
         report.error(second.origin, &join(&record.path, &second.key), message);
     }
     let is_reported = group.keys.iter().any(|key| reported.missing.contains(key));
     if given.is_empty() && group.required && !is_reported {
         reported.missing.extend(group.keys);
-        let message = format!("missing: one of {}", group.keys.join(", "));
+        let message = format!("E0014: none of the keys {} is given. Add one of them.", group.keys.join(", "));
         report.missing(record.origin, &record.path, group.keys, message, filled_by(group.keys));
     }
 }

@@ -177,7 +177,10 @@ impl Outline {
         let mut outline = Self { origin, edges, shapes, geometry, bounds, area, tally: CellTally::default() };
         let columns = outline.columns(grid).len();
         if columns > MOST_COLUMNS {
-            return Err(format!("it spans {columns} columns of cells; at most {MOST_COLUMNS} are possible"));
+            return Err(format!(
+                "E0036: the shape spans {columns} columns of cells, but at most {MOST_COLUMNS} are possible. Use \
+                 larger cells."
+            ));
         }
         outline.count(grid, points_per_cell);
         Ok(outline)
@@ -247,7 +250,11 @@ fn reached(axis: &GridAxis, [lower, upper]: [f64; 2]) -> Range<usize> {
 
 fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result<(), String> {
     if edges.len() > MOST_EDGES {
-        return Err(format!("{} edges in all; at most {MOST_EDGES} are possible", edges.len()));
+        return Err(format!(
+            "E0036: the shape has {} edges with those that are cut out, but at most {MOST_EDGES} are possible. Use \
+             fewer corners.",
+            edges.len()
+        ));
     }
     let cut = |edge: &Edge| {
         let [x, y] = [[edge.a[0], edge.b[0]], edge.heights()];
@@ -256,8 +263,8 @@ fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result
     let cells: u128 = edges.iter().map(cut).sum();
     if cells * edges.len() as u128 * points_per_cell as u128 > MOST_WORK {
         return Err(format!(
-            "{} edges cut about {cells} cells of {points_per_cell} x {points_per_cell} points, which would take too long; take \
-             fewer edges or larger cells",
+            "E0036: the {} edges of the shape cut about {cells} cells, so that generating its material points would \
+             take too long. Use fewer corners or larger cells.",
             edges.len()
         ));
     }

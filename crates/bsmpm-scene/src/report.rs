@@ -110,7 +110,7 @@ impl<'a> Report<'a> {
     /// Records that the value of `key` is a word that this version does not have any more.
     pub(crate) fn removed(&mut self, origin: Origin, key: &str, word: &'static RemovedWord) {
         let RemovedWord { word: text, last, remedy } = word;
-        let message = format!("\"{text}\" was removed after {last}. {remedy}");
+        let message = format!("E0018: the value \"{text}\" was removed after {last}. {remedy}");
         let error = self.placed(origin, key, message, Some(word));
         self.errors.push(ReportedError { origin, error, about: vec![key.to_owned()], causes: Vec::new() });
     }
@@ -180,7 +180,10 @@ impl<'a> Report<'a> {
     /// Hands over what earlier names the case has: one sentence for each.
     pub(crate) fn take_renamings(&mut self) -> Vec<String> {
         let sentence = |Renaming { earlier, now, paths }: Renaming| {
-            format!("{}: {earlier} is now called {now}. The earlier name is still read.", listed(&paths))
+            format!(
+                "{}: `{earlier}` is now called `{now}`. Replace the earlier name, which is still read.",
+                listed(&paths)
+            )
         };
         std::mem::take(&mut self.renamings).into_iter().map(sentence).collect()
     }
@@ -223,15 +226,9 @@ impl<'a> Report<'a> {
         if errors.len() > MOST {
             let more = errors.len() - MOST;
             errors.truncate(MOST);
-            errors.push(Error {
-                file: self.source.name.to_owned(),
-                place: Place::File,
-                key: String::new(),
-                code: None,
-                message: format!("{more} more errors are not shown"),
-                removed: None,
-                excerpt: None,
-            });
+            let message =
+                format!("E0009: {more} more errors are not shown. Correct those above, and check the case again.");
+            errors.push(Error::of_file(self.source.name, &message));
         }
         errors
     }
@@ -275,6 +272,11 @@ pub(crate) fn listed(names: &[String]) -> String {
         [others @ .., last] if names.len() <= 3 => format!("{} and {last}", others.join(", ")),
         [first, others @ ..] => format!("{first} and {} others", others.len()),
     }
+}
+
+/// A number, to four digits.
+pub(crate) fn brief(number: f64) -> f64 {
+    format!("{number:.3e}").parse().unwrap_or(number)
 }
 
 /// Text of a case made safe to print: no control characters, at most 60 characters.

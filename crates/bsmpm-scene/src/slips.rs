@@ -7,6 +7,7 @@ use crate::nearest::nearest;
 use crate::record::join;
 use crate::report::{Report, shortened};
 use crate::schema::{Key, Kind, Presence, ROOT, Table, answer};
+use bsmpm_messages::code_of;
 
 /// Unknown keys of a table that are reported at most.
 const MOST_UNKNOWN: usize = 50;
@@ -73,7 +74,10 @@ pub(crate) fn report_unknown(table: &'static Table, written: &DocumentTable, pat
         report.about(entry.origin, &join(path, &entry.key), unknown_key(table, &entry.key), meant);
     }
     if let Some(entry) = unknown.next() {
-        let message = format!("{} more unknown keys from here on", unknown.count() + 1);
+        let message = format!(
+            "E0009: {} more unknown keys follow here and are not listed. Correct those above first.",
+            unknown.count() + 1
+        );
         report.error(entry.origin, path, message);
     }
 }
@@ -81,16 +85,24 @@ pub(crate) fn report_unknown(table: &'static Table, written: &DocumentTable, pat
 /// What is wrong with an unknown key, and what is meant.
 fn unknown_key(table: &'static Table, key: &str) -> String {
     if let Some(answer) = answer(table, key) {
-        return format!("unknown key `{}` in {}: {answer}", shortened(key), table.header);
-    }
-    let unknown = format!("unknown key `{}` in {}", shortened(key), table.header);
-    if let Some(name) = nearest(key, names(table)) {
-        return format!("{unknown}; did you mean `{name}`?");
+        return match code_of(answer) {
+            Some(_) => answer.to_owned(),
+            None => format!("E0011: the key `{}` does not exist in {}. {answer}", shortened(key), table.header),
+        };
     }
     let elsewhere = ROOT.all().into_iter().find(|other| other.key(key).is_some());
-    let hint = elsewhere.map_or(String::new(), |other| format!("; `{key}` belongs to {}", other.header));
+    let hint = match (nearest(key, names(table)), elsewhere) {
+        (Some(name), _) => format!("; did you mean `{name}`?"),
+        (None, Some(other)) => format!("; it belongs to {}.", other.header),
+        (None, None) => ".".to_owned(),
+    };
     let known: Vec<&str> = names(table).collect();
-    format!("{unknown}{hint} (known: {})", known.join(", "))
+    format!(
+        "E0011: the key `{}` does not exist in {}{hint} Known keys: {}.",
+        shortened(key),
+        table.header,
+        known.join(", ")
+    )
 }
 
 fn in_value(node: &mut Node, kind: &'static Kind, path: &str, report: &mut Report<'_>) {

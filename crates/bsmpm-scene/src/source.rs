@@ -4,12 +4,14 @@ mod rows;
 mod stl;
 
 use crate::error::{Error, Place};
-use bsmpm_messages::{code_of, without_code};
 use std::io::{self, Read};
 use std::path::Path;
 
 /// Largest case file, in bytes; a larger one is refused before it is parsed.
 pub const MAX_BYTES: usize = 1 << 24;
+
+/// The same in MiB, for messages.
+const LIMIT: usize = MAX_BYTES >> 20;
 
 /// Characters of a line that an excerpt shows at most.
 const EXCERPT: usize = 100;
@@ -21,51 +23,57 @@ const EXCERPT: usize = 100;
 /// Those of opening and reading; [`io::ErrorKind::InvalidInput`] for a directory, pipe or device, which is not opened;
 /// [`io::ErrorKind::InvalidData`] if a file with rows does not hold them, or too many.
 pub fn load(path: &Path) -> io::Result<Vec<u8>> {
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file"));
-    }
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    let bytes = bounded(path)?;
     let Some(text) = std::str::from_utf8(&bytes).ok().filter(|text| bytes.len() <= MAX_BYTES && text.contains("file"))
     else {
         return Ok(bytes);
     };
     let whole = rows::inlined(text, path.parent().unwrap_or(Path::new(""))).map(String::into_bytes)?;
     if whole.len() > MAX_BYTES {
-        let message =
-            format!("with the rows of its files it has more than {MAX_BYTES} bytes, the limit of a case; thin them");
+        let message = format!(
+            "E0004: the case and the rows of its data files have more than {LIMIT} MiB, the limit. Reduce the \
+             number of rows."
+        );
         return Err(io::Error::new(io::ErrorKind::InvalidData, message));
     }
     Ok(whole)
 }
 
+/// Bytes of a regular file, at most [`MAX_BYTES`] + 1 of them.
+fn bounded(path: &Path) -> io::Result<Vec<u8>> {
+    let unread = |error: io::Error| {
+        io::Error::new(error.kind(), format!("E0001: the file cannot be read: {error}. Check its path."))
+    };
+    if !std::fs::metadata(path).map_err(unread)?.is_file() {
+        let message = "E0001: the file cannot be read: it is a directory, pipe or device. Name a regular file.";
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(unread)?;
+    file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unread)?;
+    Ok(bytes)
+}
+
 /// Text of a case file: UTF-8 without its byte order mark. One error if it is too large, UTF-16, binary or no UTF-8.
 pub(crate) fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Vec<Error>> {
-    let whole = |message: String| {
-        vec![Error {
-            file: name.to_owned(),
-            place: Place::File,
-            key: String::new(),
-            code: code_of(&message).map(str::to_owned),
-            message: without_code(&message).to_owned(),
-            removed: None,
-            excerpt: None,
-        }]
-    };
+    let whole = |message: &str| vec![Error::of_file(name, message)];
     if bytes.len() > MAX_BYTES {
-        return Err(whole(format!("the file is larger than {MAX_BYTES} bytes, the limit of a case file")));
+        let message = format!("E0004: the file has more than {LIMIT} MiB, the limit of a case. Check the file's name.");
+        return Err(whole(&message));
     }
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        return Err(whole("the file is UTF-16; save it as UTF-8".to_owned()));
+        return Err(whole("E0002: the file is UTF-16 text. Save it as UTF-8."));
     }
     let line = |at: usize| 1 + bytes[..at].iter().filter(|byte| **byte == b'\n').count();
     if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
-        let message = format!("line {} holds a NUL byte: the file is binary or UTF-16; a case is UTF-8 text", line(at));
-        return Err(whole(message));
+        let message = format!(
+            "E0002: line {} has a NUL byte, so the file is binary or UTF-16. Check its name, or save it as UTF-8 text.",
+            line(at)
+        );
+        return Err(whole(&message));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
-        let message = format!("line {} is no UTF-8; a case is UTF-8 text", line(error.valid_up_to()));
-        whole(message)
+        whole(&format!("E0002: line {} is not UTF-8 text. Save the file as UTF-8.", line(error.valid_up_to())))
     })?;
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }

@@ -210,24 +210,27 @@ pub fn parse(text: &str, expected: Dimension) -> Result<f64, String> {
         return Ok(value);
     }
     let unit = split(text).map_or("", |(_, unit)| unit);
-    Err(match expected {
-        Dimension::LineForce if found == Dimension::Force => {
-            let written = crate::report::shortened(text);
-            format!(
-                "\"{written}\" is a force; plane strain is 1 m thick and takes forces per metre ({})",
-                list(expected)
-            )
-        }
-        Dimension::Number => format!("`{unit}` is a unit of {}, but this is a pure number", noun(found)),
-        _ => format!("`{unit}` is a unit of {}; expected {expected} ({})", noun(found), list(expected)),
-    })
+    let units = match expected {
+        Dimension::Number => String::new(),
+        _ => format!(" ({})", list(expected)),
+    };
+    Err(format!(
+        "E0021: the value has the wrong unit: expected {expected}{units}, found `{unit}`, a unit of {}.",
+        noun(found)
+    ))
 }
 
 /// Value of `text`, a number followed by a unit of the dimension `of` and `/m`, e.g. `"2 kPa/m"`, in SI.
 pub(crate) fn parse_per_metre(text: &str, of: Dimension) -> Result<f64, String> {
     let upper = text.trim().strip_suffix('m').and_then(|rest| rest.trim_end().strip_suffix('/'));
     let units: Vec<String> = of.units().map(|unit| format!("{unit}/m")).collect();
-    let wrong = || format!("\"{}\" has no unit per metre ({})", crate::report::shortened(text), units.join(", "));
+    let wrong = || {
+        format!(
+            "E0021: \"{}\" has no unit per metre of depth. Use one of {}.",
+            crate::report::shortened(text),
+            units.join(", ")
+        )
+    };
     parse(upper.ok_or_else(wrong)?, of)
 }
 
@@ -236,14 +239,19 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
     let written = crate::report::shortened(text);
     let units = meant.map_or(String::new(), |dimension| format!(" ({})", list(dimension)));
     let Some((number, unit)) = split(text) else {
-        return Err(format!("\"{written}\" is no number with a unit{units}"));
+        return Err(format!("E0022: \"{written}\" is not a number with a unit{units}. Begin with the number."));
     };
     if unit.is_empty() {
-        return Err(format!("\"{written}\" has no unit{units}; a number without one is written without quotes"));
+        return Err(format!(
+            "E0022: \"{written}\" has no unit{units}. Add one, or write the number in SI units (angles in degrees) \
+             without quotes."
+        ));
     }
     let plain = unit.replace('²', "2").replace('³', "3").replace(['µ', 'μ'], "u").replace('^', "").replace('°', "deg");
     if let Some((mass, force)) = MASSES_PER_AREA.iter().find(|(mass, _)| *mass == plain) {
-        return Err(format!("\"{written}\": `{mass}` is a mass per area, and no stress. Write the force: `{force}`"));
+        return Err(format!(
+            "E0021: `{mass}` in \"{written}\" is a mass per area, not a stress. Write a force per area: `{force}`."
+        ));
     }
     let alias = ALIASES.iter().find(|(alias, _)| *alias == plain);
     let plain = alias.map_or(plain, |(_, name)| (*name).to_owned());
@@ -253,7 +261,12 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
     let Some((dimension, worth)) = UNITS.iter().chain([&OLDER_STRESSES]).find_map(known) else {
         let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
         let near = hint(&plain, all.flat_map(|(_, units)| units.iter().map(|(name, _)| *name)));
-        return Err(format!("\"{written}\": `{}` is no known unit{units}{near}", crate::report::shortened(unit)));
+        let end = if near.is_empty() { "." } else { &near };
+        let known = meant.map_or(String::new(), |dimension| format!(" Known units: {}.", list(dimension)));
+        return Err(format!(
+            "E0020: the unit `{}` of the value \"{written}\" is not known{end}{known}",
+            crate::report::shortened(unit)
+        ));
     };
     Ok((value(number, worth)?, dimension))
 }
@@ -261,13 +274,17 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
 /// The double nearest to the decimal number `text`.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     let written = crate::report::shortened(text);
-    let value: f64 = text.parse().map_err(|_| format!("{written} is no number"))?;
+    let value: f64 = text.parse().unwrap_or(f64::NAN);
     let mantissa = text.split(['e', 'E']).next().unwrap_or(text);
     match value {
-        _ if value.is_nan() || text.contains("inf") => Err(format!("{written} is no finite number")),
-        _ if value.is_infinite() => Err(format!("{written} is too large for a double")),
+        _ if value.is_nan() || text.contains("inf") => {
+            Err(format!("E0010: {written} is not a number that can be used. Write a finite number."))
+        }
+        _ if value.is_infinite() => {
+            Err(format!("E0010: {written} is too large for a floating-point number. Check its exponent."))
+        }
         0.0 if mantissa.contains(|c: char| matches!(c, '1'..='9')) => {
-            Err(format!("{written} is too small for a double"))
+            Err(format!("E0010: {written} is too small for a floating-point number. Write 0 for zero."))
         }
         _ => Ok(value + 0.0), // -0.0 becomes 0.0
     }
@@ -277,7 +294,9 @@ fn value(number: &str, worth: Worth) -> Result<f64, String> {
     let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     match worth {
         Ten(shift) => {
-            let exponent: i64 = exponent.parse().map_err(|_| format!("{number} is no number that a double holds"))?;
+            let beyond =
+                |_| format!("E0010: {number} is outside the range of floating-point numbers. Check its exponent.");
+            let exponent: i64 = exponent.parse().map_err(beyond)?;
             finite(&format!("{mantissa}e{}", exponent.saturating_add(shift.into())))
         }
         Times(factor) => finite(number).map(|value| value * factor),
@@ -375,9 +394,11 @@ mod tests {
         for (text, of, value) in [("2 kPa/m", Stress, 2e3), ("-.5deg / m", Angle, -0.5), ("3 kN/m2/m", Stress, 3e3)] {
             assert_eq!(parse_per_metre(text, of), Ok(value), "{text}");
         }
-        for (text, says) in
-            [("2 kPa", "no unit per metre (Pa/m, kPa/m"), ("2 m/m", "expected a stress"), ("/m", "no number")]
-        {
+        for (text, says) in [
+            ("2 kPa", "no unit per metre of depth. Use one of Pa/m, kPa/m"),
+            ("2 m/m", "expected a stress"),
+            ("/m", "E0022"),
+        ] {
             let error = parse_per_metre(text, Stress).unwrap_err();
             assert!(error.contains(says), "{text}: {error}");
         }
@@ -386,24 +407,28 @@ mod tests {
     #[test]
     fn wrong_units_say_which() {
         let rows = [
-            ("5 kPa", Length, "`kPa` is a unit of stress; expected a length (m, cm, mm"),
-            ("5 m", Number, "unit of length, but this is a pure number"),
+            ("5 kPa", Length, "expected a length (m, cm, mm, um, nm, km), found `kPa`, a unit of stress"),
+            ("5 m", Number, "expected a pure number, found `m`, a unit of length"),
             ("5", Length, "has no unit"),
             ("5 KPa", Stress, "did you mean `kPa`?"),
-            ("5 t/m2", Stress, "is a mass per area, and no stress. Write the force: `tf/m2`"),
-            ("5 kg/cm2", Stress, "Write the force: `kgf/cm2`"),
-            ("5 furlong", Length, "no known unit (m, cm"),
-            ("five m", Length, "no number with a unit"),
-            ("nan m", Length, "no number"),
-            ("inf m", Length, "no number"),
+            ("5 t/m2", Stress, "is a mass per area, not a stress. Write a force per area: `tf/m2`"),
+            ("5 kg/cm2", Stress, "Write a force per area: `kgf/cm2`"),
+            (
+                "5 furlong",
+                Length,
+                "E0020: the unit `furlong` of the value \"5 furlong\" is not known. Known units: m, cm",
+            ),
+            ("five m", Length, "not a number with a unit"),
+            ("nan m", Length, "E0022"),
+            ("inf m", Length, "E0022"),
             ("1e400 m", Length, "too large"),
             ("1e-400 m", Length, "too small"),
-            ("1e99999999999999999999 m", Length, "no number that a double holds"),
-            ("1_000 m", Length, "no known unit"),
-            ("", Length, "no number"),
-            ("-", Length, "no number"),
+            ("1e99999999999999999999 m", Length, "outside the range of floating-point numbers"),
+            ("1_000 m", Length, "E0020"),
+            ("", Length, "E0022"),
+            ("-", Length, "E0022"),
             ("5 \u{202e}m", Length, "\\u{202e}"),
-            ("5 kN", LineForce, "plane strain is 1 m thick and takes forces per metre (N/m, kN/m, MN/m)"),
+            ("5 kN", LineForce, "expected a force per metre of thickness (N/m, kN/m, MN/m), found `kN`"),
             ("5 kPa", Force, "expected a force (N, kN, MN)"),
             ("5 kPa", LineForce, "expected a force per metre of thickness (N/m"),
         ];

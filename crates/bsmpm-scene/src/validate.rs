@@ -56,6 +56,9 @@ use bsmpm::step::newmark::Newmark;
 const MOST_SHOWN_FRICTION: f64 = 1.0;
 /// Steps of a run at most.
 const MOST_STEPS: f64 = 1e9;
+/// Of a key that belongs to dynamics, in an analysis of another type.
+const NO_INERTIA: &str = "E0218: this key belongs to dynamics, and the analysis has no inertia. Delete it, or use \
+                          analysis.type = \"dynamic\".";
 /// m/s2  by which a unit weight is divided, whatever the scene's gravity is.
 pub(crate) const STANDARD_GRAVITY: f64 = 9.81;
 /// Relative difference from it that the rounded components of an inclined gravity may have.
@@ -215,11 +218,11 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
     let end = match (analysis.gives("end"), kind) {
         (true, _) => analysis.number("end")?,
         (false, AnalysisType::QuasiStatic) => {
-            report.note("analysis.end", "1.0", "pseudo-time of a quasi-static analysis");
+            report.note("analysis.end", "1.0", "default: a quasi-static analysis runs from pseudo-time 0 to 1");
             1.0
         }
         (false, AnalysisType::Dynamic | AnalysisType::InTime | AnalysisType::Consolidation) => {
-            let message = format!("missing; a {kind} analysis needs its end");
+            let message = format!("E0255: a {kind} analysis needs the time at which it ends. Add `end` to [analysis].");
             report.error(analysis.origin, &analysis.path_of("end"), message);
             return None;
         }
@@ -229,12 +232,18 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
         None => analysis.number("dt")?,
     };
     if dt > end {
-        analysis.error("dt", format!("{dt} is out of range; allowed: dt <= end = {end}"), report);
+        let message = format!(
+            "E0256: the first step, dt = {dt}, is longer than the analysis, end = {end}. Reduce dt, or give steps."
+        );
+        analysis.error("dt", message, report);
         return None;
     }
     let growth = growth(analysis, (kind, dt), report)?;
     if end / dt > MOST_STEPS {
-        let message = format!("{:.3e} steps of dt to the end; at most {MOST_STEPS:e} are possible", end / dt);
+        let message = format!(
+            "E0257: dt = {dt} gives {:.3e} steps until the end (at most {MOST_STEPS:e}). Increase dt.",
+            end / dt
+        );
         analysis.error("dt", message, report);
         return None;
     }
@@ -255,18 +264,24 @@ fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Repor
     let mut keys = ["growth", "dt_max"].into_iter().filter(|key| analysis.gives(key));
     if let Some(key) = keys.next() {
         if kind != AnalysisType::Consolidation {
-            let message = format!("steps grow in a consolidation analysis only, and this one is {kind}");
+            let message = format!(
+                "E0258: the steps of a {kind} analysis cannot grow. Delete the key, or use type = \"consolidation\"."
+            );
             analysis.error(key, message, report);
             return None;
         }
         if analysis.gives("steps") {
-            analysis.error(key, "`steps` are equal steps: give dt, the first one", report);
+            analysis.error(
+                key,
+                "E0259: `steps` divides the analysis into equal steps, which cannot grow. Give dt instead.",
+                report,
+            );
             return None;
         }
     }
     let most = if analysis.gives("dt_max") { analysis.number("dt_max")? } else { f64::INFINITY };
     if most < dt {
-        analysis.error("dt_max", format!("{most} is out of range; allowed: dt_max >= dt = {dt}"), report);
+        analysis.error("dt_max", format!("E0260: dt_max = {most} is less than dt = {dt}. Increase dt_max."), report);
         return None;
     }
     let factor = if analysis.gives("growth") { analysis.number("growth")? } else { 1.0 };
@@ -279,7 +294,7 @@ fn newmark(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> Option
         return Some(Newmark::default());
     };
     if regime == Regime::QuasiStatic {
-        analysis.error(key, "there is no inertia, and so no numerical damping, in a quasi-static analysis", report);
+        analysis.error(key, NO_INERTIA, report);
     }
     if analysis.gives("spectral_radius") {
         return analysis.number("spectral_radius").map(Newmark::of_spectral_radius);
@@ -290,7 +305,7 @@ fn newmark(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> Option
 /// The mass matrix, of which only a dynamic analysis has any.
 fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatrix {
     if regime == Regime::QuasiStatic && analysis.gives("mass") {
-        analysis.error("mass", "there is no inertia, and so no mass matrix, in a quasi-static analysis", report);
+        analysis.error("mass", NO_INERTIA, report);
     }
     analysis.word("mass").unwrap_or_default()
 }
@@ -298,7 +313,7 @@ fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatri
 /// The velocities near fixed faces, as given, of which only a dynamic analysis has any; see [`physics::walls`].
 fn wall_velocity(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> WallVelocity {
     if regime == Regime::QuasiStatic && analysis.gives("wall_velocity") {
-        analysis.error("wall_velocity", "points have no velocity in a quasi-static analysis", report);
+        analysis.error("wall_velocity", NO_INERTIA, report);
     }
     analysis.word("wall_velocity").unwrap_or_default()
 }
@@ -345,13 +360,13 @@ fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Co
     let (given, lifts) = (face.number("friction_coefficient")?, face.flag("separates")?);
     let friction = factor.map_or(given, |factor| given / factor);
     if friction != given {
-        let reason = format!("strength_reduction.factor = {}", factor.unwrap_or(1.0));
+        let reason = format!("divided by strength_reduction.factor = {}", factor.unwrap_or(1.0));
         report.note(face.path_of("friction_coefficient"), format!("{friction}"), reason);
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
-            "{}: {friction}: shown to be right up to {MOST_SHOWN_FRICTION}; with more, steps may find no state that agrees \
-             with Coulomb's law, or one of several",
+            "W0204: {}: a friction coefficient of {friction} is above {MOST_SHOWN_FRICTION}, the largest that was \
+             verified. Steps may not converge. Use a smaller one, or \"fixed\".",
             face.path_of("friction_coefficient")
         ));
     }
@@ -369,22 +384,28 @@ fn gravity(record: &Record, regime: Option<Regime>, end: Option<f64>, report: &m
         report.note(
             "gravity.acceleration",
             format!("horizontal part of {written} times the vertical one"),
-            "pseudo-static: pore pressures and the stress of [initial] are those of the vertical part",
+            "pseudo-static analysis: pore pressures and initial stresses follow from the vertical part alone",
         );
     }
     let size = acceleration[0].hypot(acceleration[1]).hypot(acceleration[2]);
     let off = (size / STANDARD_GRAVITY - 1.0).abs();
     if off <= 0.01 && off > NEARLY_STANDARD {
         report.warn(format!(
-            "gravity.acceleration: |acceleration| = {size} m/s2 is near {STANDARD_GRAVITY} without being it; densities \
-             follow from unit weights with {STANDARD_GRAVITY}"
+            "W0205: gravity.acceleration: gravity is {size} m/s2, but unit weights are converted to densities with \
+             {STANDARD_GRAVITY}. Weights differ by {:.2} %. Use {STANDARD_GRAVITY} m/s2.",
+            1e2 * off
         ));
     }
     if size == 0.0 {
-        report.warn("gravity.acceleration: zero; leave [gravity] out where there is none");
+        report.warn(
+            "W0206: gravity.acceleration: gravity is zero, so the soil has no weight. Correct it, or delete [gravity].",
+        );
     }
     if end.is_some_and(|end| ramp > end) {
-        report.warn(format!("gravity.ramp: {ramp} is beyond the end of the run; gravity is never fully applied"));
+        report.warn(format!(
+            "W0207: gravity.ramp: the ramp of {ramp} is longer than the analysis, so gravity is never fully applied. \
+             Reduce gravity.ramp, or increase analysis.end."
+        ));
     }
     Some(gravity)
 }

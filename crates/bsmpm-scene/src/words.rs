@@ -42,7 +42,7 @@ pub struct Words {
     pub words: &'static [(&'static str, &'static str)],
     /// Words that are not available yet.
     pub later: &'static [&'static str],
-    /// Words that others use, and which of these is meant.
+    /// Words that others use, and which of these is meant; with a code where what is meant is not available.
     pub misnomers: &'static [(&'static str, &'static str)],
     /// Words of earlier versions, which are still read, and those of now.
     pub earlier: &'static [(&'static str, &'static str)],

@@ -5,15 +5,20 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use bsmpm_messages::{headed, with_context};
 use bsmpm_scene::Case;
 
 use crate::Error;
 
 /// The bytes of a case file.
 pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
+    let name = path.display().to_string();
     bsmpm_scene::load(path).map_err(|error| match error.kind() {
-        ErrorKind::InvalidData => Error::BadCase { path: path.to_owned(), errors: vec![error.to_string()] },
-        _ => Error::unread("case", path)(error),
+        ErrorKind::InvalidData => {
+            let message = format!("{name}: {}", headed(&error.to_string(), "error"));
+            Error::BadCase { path: path.to_owned(), errors: vec![message] }
+        }
+        _ => Error::Missing { reason: with_context(&error.to_string(), &name) },
     })
 }
 

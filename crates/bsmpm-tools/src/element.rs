@@ -92,11 +92,13 @@ fn chosen(case: &Case, arguments: &ElementArguments) -> Result<Vec<StressPath>, 
     let known: Vec<&str> = case.elements.iter().map(|test| test.name.as_str()).collect();
     let path = arguments.case.display();
     if known.is_empty() {
-        let reason = format!("{path} has no [element.NAME]: no test is reported; see `bsmpm element --help`");
+        let reason = format!(
+            "E0851: {path} has no element test. Add a table [element.NAME] with its stages; `bsmpm element --help` has an example."
+        );
         return Err(Error::Usage { reason });
     }
     if let Some(name) = arguments.tests.iter().find(|name| !known.contains(&name.as_str())) {
-        let reason = format!("{path} has no test `{name}` (tests: {})", known.join(", "));
+        let reason = format!("E0852: {path} has no element test `{name}`. Use one of {}.", known.join(", "));
         return Err(Error::Usage { reason });
     }
     let wanted = |name: &String| arguments.tests.is_empty() || arguments.tests.contains(name);

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use bsmpm_messages::headed;
 use clap::Args;
 
 use crate::launch::command;
@@ -80,7 +81,8 @@ pub struct EstimateArguments {
 /// Those of the command line and the case before anything runs; [`Error::Run`] if the first steps fail; those of files.
 pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Result<String, Error> {
     if !(arguments.budget.is_finite() && arguments.budget > 0.0) {
-        return Err(Error::Usage { reason: format!("--budget {}: expected some seconds", arguments.budget) });
+        let reason = format!("E0856: --budget {} is not a time. Give a positive number of seconds.", arguments.budget);
+        return Err(Error::Usage { reason });
     }
     let case = case::parsed(&arguments.case, &case::load(&arguments.case)?, &arguments.set)?;
     let actual = arguments.against.as_deref().map(against::read).transpose()?;
@@ -100,7 +102,9 @@ pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Res
     let mut report = EstimateReport::of(&arguments.case, &case, ranks, (speed, &found));
     if let Some(actual) = actual {
         if actual.text != case.text {
-            announce("warning: the run is of another text of the case, or of other overrides");
+            let warning = "W0854: the run to compare with was made of another case, or with other --set. Estimate and result \
+                           differ for that reason, too. Use the case and the --set of the run.";
+            announce(&headed(warning, "warning"));
         }
         report.compare(&actual);
     }

@@ -3,6 +3,7 @@
 
 use std::path::PathBuf;
 
+use bsmpm_messages::headed;
 use bsmpm_scene::Case;
 use clap::Args;
 
@@ -89,7 +90,12 @@ pub fn run(arguments: &LimitLoadArguments, mut say: impl FnMut(&str)) -> Result<
     }
     let without_cohesion = outcomes.get(grids);
     if let Some(outcome) = without_cohesion.filter(|outcome| outcome.state != RunState::Done) {
-        say(&format!("the run without small cohesions did not come to its end: {}", outcome.reason));
+        let warning = format!(
+            "W0853: the run without small cohesions failed ({}). The part of the load that they carry is not known. Delete them \
+             in the case.",
+            outcome.reason
+        );
+        say(&headed(&warning, "warning"));
     }
     let without_cohesion = without_cohesion.filter(|outcome| outcome.state == RunState::Done);
     let report = LimitLoadReport::of(&orders[..grids], &outcomes[..grids], without_cohesion)?;

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use bsmpm_io::exit::{CASE, STOPPED};
+use bsmpm_messages::without_code;
 use bsmpm_scene::Case;
 use clap::Args;
 
@@ -78,15 +79,19 @@ pub fn run(arguments: &SlurmArguments, mut report: impl FnMut(&str)) -> Result<O
     Ok(None)
 }
 
-/// What is to be said of more ranks than the case has use for.
+/// Warns of more ranks than the grid can be divided among, or than make the run faster.
 fn doubt(case: &Case, ranks: u64) -> Option<String> {
     let count = ranks as usize;
     let useful = case.estimate(count).useful_ranks;
     if case.parts(count, [1; 2]).is_none() {
-        return Some(format!("{}; the run would be refused with {CASE}", case.too_many(count)));
+        let reason = case.too_many(count);
+        return Some(format!("W0855: the run of this job would end with exit code {CASE}: {}", without_code(&reason)));
     }
     (ranks > useful).then(|| {
-        format!("{ranks} ranks are more than the about {useful} that the case has use for: the others would wait for each other")
+        format!(
+            "W0856: the run is not faster on {ranks} ranks than on about {useful}, because ranks wait for each other. Use --ranks \
+             {useful}."
+        )
     })
 }
 
@@ -171,7 +176,7 @@ pub(crate) fn clock(seconds: u64) -> String {
 
 /// HH:MM:SS or D-HH:MM:SS.
 fn limit(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("{text} is no time limit; expected HH:MM:SS or D-HH:MM:SS");
+    let wrong = || format!("`{text}` is not a time limit. Use HH:MM:SS or D-HH:MM:SS");
     let number = |part: &str, most: u64| {
         let is_number = part.len() <= 5 && part.bytes().all(|byte| byte.is_ascii_digit());
         part.parse().ok().filter(|number| is_number && *number <= most).ok_or_else(wrong)
@@ -182,7 +187,10 @@ fn limit(text: &str) -> Result<Duration, String> {
     let hours: u64 = number(hours, 9999)?;
     let seconds = (24 * days + hours) * 3600 + number(minutes, 59)? * 60 + number(seconds, 59)?;
     if seconds < SHORTEST {
-        return Err(format!("{text} is too short for a start, a step and a checkpoint; at least {}", clock(SHORTEST)));
+        return Err(format!(
+            "{text} is too short for a start, a step and a checkpoint. Use at least {}",
+            clock(SHORTEST)
+        ));
     }
     Ok(Duration::from_secs(seconds))
 }

@@ -261,6 +261,6 @@ fn more_ranks_than_the_case_has_use_for_are_warned_of() {
         String::from_utf8(output.stderr).unwrap()
     };
     assert_eq!(warned("1"), "");
-    assert!(warned("8").contains("more than the about 1 that the case has use for"), "{}", warned("8"));
-    assert!(warned("67").contains("at most 11 ranks"), "{}", warned("67"));
+    assert!(warned("8").contains("W0856: the run is not faster on 8 ranks than on about 1"), "{}", warned("8"));
+    assert!(warned("67").contains("W0855") && warned("67").contains("at most 11 ranks"), "{}", warned("67"));
 }

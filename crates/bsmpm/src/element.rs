@@ -53,16 +53,18 @@ pub struct Control {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ElementError {
     /// The stress at the start is none of the material.
-    #[error("the stress at the start is beyond the material's strength: plastic strain of {0:.1e} at once")]
+    #[error(
+        "the initial stress exceeds the strength: plastic strain of {0:.1e} at the start. Change `k0` or the strength."
+    )]
     BeyondYield(f64),
     /// The stress at the start pulls, or is none, and the material's stiffness is that of its pressure.
-    #[error("the material has no state without pressure: give it one at the start")]
+    #[error("the stiffness of this model follows the stress, and the initial stress is 0. Give `pressure`.")]
     NoPressure,
     /// The material has no response at the start.
-    #[error("no stress at the start: {0}")]
+    #[error("the material has no stress at the start: {0}")]
     Start(MaterialError),
     /// No state carries what is wanted.
-    #[error("no state of the material carries the stress that is wanted {done:.4} of the way; {reason}")]
+    #[error("the material cannot carry the prescribed stress: {:.2} % of the stage was reached; {reason}", 100.0 * done)]
     NoEquilibrium {
         /// part of the stage that was reached
         done: f64,

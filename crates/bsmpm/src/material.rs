@@ -394,13 +394,16 @@ impl Material {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum MaterialError {
     /// A component of the trial tensor is NaN, infinite or beyond 1e100.
-    #[error("the trial elastic left Cauchy-Green tensor is not finite: {0:?}")]
+    #[error("the deformation in this step is not finite (elastic left Cauchy-Green tensor {0:?})")]
     NotFinite([f64; 6]),
     /// An eigenvalue of the trial tensor is not positive, or below 1e-100: the step has turned the material inside out.
-    #[error("the trial elastic left Cauchy-Green tensor is not positive definite: smallest eigenvalue {0:e}")]
+    #[error(
+        "the step turns the material inside out (smallest eigenvalue of the elastic left Cauchy-Green tensor {0:e}, must \
+         be positive)"
+    )]
     NotPositive(f64),
     /// The law has no stress for these principal strains, or no state: a pressure beyond all numbers, or one that was
     /// never given at the start.
-    #[error("the material has no stress at the principal elastic strains {0:?}")]
+    #[error("the material model has no finite stress at the principal elastic strains {0:?}")]
     NoStress([f64; 3]),
 }

@@ -21,7 +21,11 @@ pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report
     let mut repeated: Option<usize> = None;
     for error in errors {
         let Some(span) = &error.span else {
-            report.error(Origin::Nowhere, "", format!("no valid TOML: {}", error.message));
+            report.error(
+                Origin::Nowhere,
+                "",
+                format!("E0005: the line does not follow the TOML format: {}.", error.message),
+            );
             continue;
         };
         let line = source.line(span.start);
@@ -72,7 +76,7 @@ fn explained(source: &Source<'_>, span: &std::ops::Range<usize>, message: &str) 
     if is_number_with_unit(value) {
         return format!("E0043: `{}` has a unit, but no quotes. Write \"{}\".", shortened(value), shortened(value));
     }
-    format!("no valid TOML: {message}")
+    format!("E0005: the line does not follow the TOML format: {message}.")
 }
 
 /// The number with a decimal point if it is written with a comma.
@@ -287,6 +291,6 @@ mod tests {
         assert!(only("a = 0,3\n").contains("`0,3` has a decimal comma. Write a decimal point: 0.3."));
         assert!(only("a = -10,25 # m\n").contains("Write a decimal point: -10.25."));
         assert!(only("a = 10 kPa\n").contains("`10 kPa` has a unit, but no quotes. Write \"10 kPa\"."));
-        assert!(only("a = [1, 2\n, 3]]\n").contains("no valid TOML"));
+        assert!(only("a = [1, 2\n, 3]]\n").contains("E0005: "));
     }
 }

@@ -5,12 +5,12 @@ use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};
 use super::concentration::PresetOpening;
 use super::scene::{GradedSegment, PresetScene, around};
+use crate::report::brief;
 use crate::validate::SQUARE;
 use crate::words::{Side, Support, Word};
 
 /// What cells follow from.
-pub(super) const CELLS: &str = "the size of the bodies, or the width of strips and loaded segments, the grid's corners \
-                                and [boundary]; 1e5 along an axis at most";
+pub(super) const CELLS: &str = "the bodies, footings and loads, the corners of the grid and [boundary]";
 
 const NAMES: [&str; 2] = ["x", "y"];
 
@@ -71,7 +71,7 @@ impl PresetScene<'_> {
     pub(super) fn cells(&self, preset: &Preset) -> Option<Cells> {
         let [lower, upper] = self.bounds()?;
         let side = (upper[0] - lower[0]).min(upper[1] - lower[1]);
-        let (size, why) = (side / preset.across, format!("{} across the {side} m of the bodies", preset.across));
+        let (size, why) = (side / preset.across, format!("{} cells across the bodies ({side} m)", preset.across));
         let (size, why) = self.wave_cell(size).unwrap_or((size, why));
         let mut zones = self.zones(preset, size)?;
         zones.extend(self.at_openings(preset, size));
@@ -100,7 +100,7 @@ impl PresetScene<'_> {
             let spacing = Spacing { cell: edges[axis], growth: 1.0, fine: Vec::new() };
             spacing.breakpoints(ends[axis], &wanted[axis])
         };
-        let why = format!("{why}, moved by up to half a cell to where materials meet and strips and loads end");
+        let why = format!("{why}, adjusted by up to half a cell to interfaces and to the ends of footings and loads");
         let mut cells = of_breakpoints([along(0)?, along(1)?], why)?;
         cells.breakpoints = None; // about equal ones
         Some(cells)
@@ -123,7 +123,7 @@ impl PresetScene<'_> {
         let is_square = |[x, y]: &[f64; 2]| x.max(*y) <= SQUARE * x.min(*y);
         let all: Vec<[f64; 2]> = given.into_iter().chain(divided).map(fitted).filter(is_square).collect();
         let edges = all.iter().find(|edges| self.on_lines(**edges) == Some(true)).or(all.first())?;
-        Some(of_edges(*edges, format!("{why}; equal squares for the band_width of a material")))
+        Some(of_edges(*edges, format!("{why}; equal squares, as a material has a band_width")))
     }
 
     /// Whether both faces across an axis stay where they are.
@@ -162,11 +162,12 @@ impl PresetScene<'_> {
             Spacing { cell: size, growth, fine }.breakpoints(ends[axis], &wanted)
         };
         let around = match (zones.iter().any(|zone| zone.acts), zones.iter().all(|zone| zone.acts)) {
-            (_, true) => "strips and loads",
-            (true, false) => "strips, loads, holes, notches and re-entrant corners",
+            (_, true) => "footings and loads",
+            (true, false) => "footings, loads, holes, notches and re-entrant corners",
             (false, false) => "holes, notches and re-entrant corners",
         };
-        let why = format!("{why}, smaller ones around {around}, growing away by a factor of about {growth} each");
+        let why =
+            format!("{why}, smaller cells around {around}, each about {growth} times as long as the next smaller one");
         let mut cells = of_breakpoints([along(0)?, along(1)?], why)?;
         cells.edge = size;
         for Zone { ranges, why, acts } in zones {
@@ -199,9 +200,9 @@ impl PresetScene<'_> {
                 let lower = along().fold(f64::INFINITY, f64::min) - reach;
                 Fine { lower, upper: along().fold(f64::NEG_INFINITY, f64::max) + reach, cell }
             };
-            let whole = if cut { format!(", {} m cut at a roller", brief(0.5 * width)) } else { String::new() };
+            let half = if cut { ", half of it modelled" } else { "" };
             let why = format!(
-                "{} along the width of {}, {} m{whole}; on all of its way and {} of the width around it",
+                "{} cells across `{}` ({} m wide{half}), along its path and {} widths around it",
                 brief(width / cell),
                 segment.name,
                 brief(width),
@@ -220,7 +221,7 @@ impl PresetScene<'_> {
             let range = |axis: usize| Fine { lower: lower[axis] - reach, upper: upper[axis] + reach, cell };
             let (across, width) = (preset.opening, brief(opening.width));
             let why = format!(
-                "{across} across the hole or notch {}, {width} m; and {} of it around",
+                "{across} cells across the hole or notch {} ({width} m), and {} widths around it",
                 opening.name, preset.reach
             );
             (cell > 0.0 && cell < size).then(|| Zone { ranges: [range(0), range(1)], why, acts: false })
@@ -234,7 +235,7 @@ impl PresetScene<'_> {
         let zone = |at: [f64; 2]| {
             let range = |axis: usize| Fine { lower: at[axis] - reach, upper: at[axis] + reach, cell };
             let place = at.map(brief);
-            let why = format!("1/{} of the others at the re-entrant corner {place:?}", preset.corner);
+            let why = format!("1/{} of the other cells, at the re-entrant corner {place:?}", preset.corner);
             Zone { ranges: [range(0), range(1)], why, acts: false }
         };
         self.re_entrant_corners().into_iter().map(zone).collect()
@@ -295,9 +296,4 @@ fn of_breakpoints(breakpoints: [Vec<f64>; 2], why: String) -> Option<Cells> {
     let value = format!("{{ x = {:?}, y = {:?} }}", breakpoints[0], breakpoints[1]);
     let cells = Cells { keys: ["knots", "cell"], value, edge, why, sizes: Vec::new(), breakpoints: Some(breakpoints) };
     (edge > 0.0).then_some(cells)
-}
-
-/// A number, to four digits.
-fn brief(number: f64) -> f64 {
-    format!("{number:.3e}").parse().unwrap_or(number)
 }

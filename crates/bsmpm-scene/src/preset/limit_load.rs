@@ -39,10 +39,10 @@ pub(super) fn fill(
     let mut filling = Completion { document, choice, report, filled: false };
     filling.put("grid", &["degree"], &quoted(ORDER), "");
     filling.points(POINTS);
-    filling.put("analysis", &["steps", "dt"], STEPS, "with fewer, steps near failure are cut");
+    filling.put("analysis", &["steps", "dt"], STEPS, "with fewer, steps near failure do not converge and are halved");
     let (method, why) = match scene.dilates() {
-        true => (Stabilisation::None, "averages of volumetric strain are wrong in soil that dilates"),
-        false => (Stabilisation::ConsistentFBar, "plastic flow without change of volume locks without"),
+        true => (Stabilisation::None, "averages of the volumetric strain are wrong in dilating soil"),
+        false => (Stabilisation::ConsistentFBar, "prevents volumetric locking of plastic flow without dilation"),
     };
     filling.put("stabilisation", &["method"], &quoted(method), why);
     let [energy, force] = match accuracy {
@@ -51,7 +51,7 @@ pub(super) fn fill(
     };
     filling.put("solver", &["tolerance"], energy, "");
     filling.put("solver", &["force_tolerance"], force, "");
-    filling.put("solver", &["background"], BACKGROUND, "loads do not depend on it");
+    filling.put("solver", &["background"], BACKGROUND, "small enough that the limit load does not depend on it");
     filling.filled
 }
 

@@ -9,9 +9,7 @@ use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
 use crate::words::{AnalysisType, Purpose};
 
 /// What steps follow from.
-pub(super) const STEPS: &str = "`type`, the cells and, in dynamics, `end` and young, poisson and density of the bodies' \
-                                materials, in statics what is moved, and never with \
-                                type \"consolidation\": give dt and growth; 1e8 at most";
+pub(super) const STEPS: &str = "[analysis], the cells, the stiffness and density of the soil and prescribed motions";
 
 /// Keys without which neither cells nor steps can be chosen.
 pub(super) const BASIS: &[&str] = &[
@@ -91,23 +89,23 @@ impl<'a> PresetScene<'a> {
         let (steps, why) = match analysis.word("type")? {
             AnalysisType::Dynamic => {
                 let (crossed, way) = (preset.crossed, analysis.number("end")? * self.shear_wave()?);
-                (way / (crossed * cell), format!("a shear wave crosses {crossed} cells in each"))
+                (way / (crossed * cell), format!("a shear wave travels {crossed} cells in a step"))
             }
             AnalysisType::QuasiStatic | AnalysisType::InTime => {
                 let steps = |moved: (f64, f64)| moved.0 / (moved.1 * cell);
                 let moved = self.moved(preset).reduce(|a, b| if steps(b) > steps(a) { b } else { a });
                 let (steps, advance) = moved.map_or((0.0, 0.0), |moved| (steps(moved), moved.1));
                 if steps > preset.steps {
-                    (steps, format!("what is moved moves {advance} cells in each at most"))
+                    (steps, format!("prescribed motions advance at most {advance} cells in a step"))
                 } else {
-                    (preset.steps, "so many at least".to_owned())
+                    (preset.steps, "the least number of this preset".to_owned())
                 }
             }
             // Water needs first steps that suit its own pace, which no rule knows.
             AnalysisType::Consolidation => return None,
         };
         let (steps, why) = match self.interval().map(|interval| self.end() / interval).filter(|rows| *rows > steps) {
-            Some(rows) => (rows, "one for each row of [shaking] or of a load".to_owned()),
+            Some(rows) => (rows, "one step for each row of [shaking] or of a load".to_owned()),
             None => (steps, why),
         };
         // Rounding makes no step more.
@@ -118,11 +116,11 @@ impl<'a> PresetScene<'a> {
     /// What there is to lock, if any.
     pub(super) fn locks(&self) -> Option<&'static str> {
         if self.materials().filter_map(|material| material.word("model")).any(LawName::is_plastic) {
-            return Some("plastic material locks without");
+            return Some("prevents volumetric locking of plastic material");
         }
         let stiff =
             |material: &Record| material.number("poisson").is_some_and(|poisson| poisson > NEARLY_INCOMPRESSIBLE);
-        self.materials().any(stiff).then_some("nearly incompressible material locks without")
+        self.materials().any(stiff).then_some("prevents volumetric locking of nearly incompressible material")
     }
 
     /// Whether a material of the bodies dilates as it yields.
@@ -133,6 +131,10 @@ impl<'a> PresetScene<'a> {
             material.number("dilation_angle").or(profile).is_some_and(is_positive)
         };
         self.materials().any(dilates)
+    }
+
+    pub(super) fn is_consolidation(&self) -> bool {
+        self.root.record("analysis").and_then(|analysis| analysis.word("type")) == Some(AnalysisType::Consolidation)
     }
 
     /// Whether displacements are divided until they are small against cells.

@@ -25,10 +25,17 @@ impl PresetScene<'_> {
         let cells = inputs.iter().filter_map(|input| Some((input, self.slowest(input)? / (input.frequency * fewest))));
         let (input, cell) = cells.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, cell)| *cell < size)?;
         let (part, frequency) = (100.0 * SHARE, input.frequency);
-        let why =
-            format!("{fewest} in the wavelength of {frequency:.3} Hz, below which {part} % of {} lies", input.name);
+        let why = format!(
+            "{fewest} cells in the wavelength at {frequency:.3} Hz, below which {} has {part} % of its energy",
+            input.name
+        );
         Some(if cell < SMALLEST * size {
-            (SMALLEST * size, format!("a quarter of what the bodies want, at most; {why}, would be smaller"))
+            (
+                SMALLEST * size,
+                format!(
+                    "a quarter of the cell that the bodies need, the least of this preset; {why}, would be smaller"
+                ),
+            )
         } else {
             (cell, why)
         })

@@ -8,13 +8,14 @@ use crate::report::{Report, shortened};
 use crate::schema::{Kind, Range, Words};
 use crate::unit::{self, Dimension};
 use crate::words::Geometry;
+use bsmpm_messages::{code_of, with_context};
 
 /// Rows of a list that are wrong one after the other, behind which the rest is not looked at.
 const WRONG_ROWS: usize = 3;
 
 /// Of a file that `--set` names: a case is whole before it is overridden.
 pub(crate) const UNREAD: &str =
-    "files are read where the case file names them, not by --set: name it there, or set rows of numbers";
+    "E0027: --set does not read data files. Name the file in the case, or set the rows of numbers.";
 
 /// Longest name of a material, column or check.
 const LONGEST_NAME: usize = 64;
@@ -86,6 +87,16 @@ pub(super) fn read(
     }
 }
 
+/// What is wrong with a value of another type than its kind.
+pub(super) fn expected(kind: &Kind, node: &Node) -> String {
+    format!("E0013: the value has the wrong form: expected {kind}, found {}.", node.show())
+}
+
+/// What is wrong with a whole number that has more digits than one can have.
+fn too_long(text: &str) -> String {
+    format!("E0010: {} is too large for a whole number. Write it with an exponent, such as 1e20.", shortened(text))
+}
+
 /// Whether `text` is fit for a name that stands in files' headers and key paths.
 pub(super) fn is_name(text: &str) -> bool {
     let fit = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
@@ -108,7 +119,7 @@ impl ValueReader<'_, '_> {
     }
 
     fn unexpected<T>(&mut self, node: &Node) -> Option<T> {
-        let message = format!("expected {}, found {}", self.kind, node.show());
+        let message = expected(self.kind, node);
         match self.kind {
             // How many numbers there are follows from the number of dimensions.
             Kind::Vector(..) | Kind::PairProfile(..) | Kind::GradientVector(_) | Kind::Either(..) | Kind::Course(_) => {
@@ -124,23 +135,22 @@ impl ValueReader<'_, '_> {
         let message = match node.origin {
             Origin::Override(_) => UNREAD,
             Origin::Text(_) | Origin::Nowhere => {
-                "a file is named in braces, { file = \"rows.csv\" }, with nothing else in them but `along`"
+                "E0027: a data file needs braces with `file`, and nothing else but `along`. Write { file = \
+                 \"rows.csv\" }."
             }
         };
-        self.fail(node, format!("found {}: {message}", node.show()))
+        self.fail(node, message)
     }
 
     /// What a solid wants three numbers of.
     fn not_of_three<T>(&mut self, node: &Node, dimension: Dimension) -> Option<T> {
         let unit = if dimension == Dimension::LineForce { ", in N" } else { "" };
-        let message =
-            format!("expected {}, found {}: in 3-D it has three components, [x, y, z]{unit}", self.kind, node.show());
-        self.fail(node, message)
+        self.fail(node, format!("{} Give three components in 3-D, [x, y, z]{unit}.", expected(self.kind, node)))
     }
 
     fn quantity(&mut self, node: &Node, dimension: Dimension, range: &Range) -> Option<f64> {
         let read = match &node.value {
-            Value::Integer(text) if text.parse::<i64>().is_err() => Err(format!("{} is too large", shortened(text))),
+            Value::Integer(text) if text.parse::<i64>().is_err() => Err(too_long(text)),
             Value::Integer(text) | Value::Float(text) => unit::finite(text),
             Value::Text(_) if dimension == Dimension::Number => return self.unexpected(node),
             Value::Text(text) => self.worded(node, text, dimension),
@@ -148,30 +158,59 @@ impl ValueReader<'_, '_> {
         };
         let value = match read {
             Ok(value) => value,
-            Err(message) => return self.fail(node, message),
+            Err(message) => return self.fail(node, message + self.key_meant(node)),
         };
         if !range.contains(value) {
-            let why = if range.why.is_empty() { String::new() } else { format!(" ({})", range.why) };
-            let allowed = range.condition(self.name);
-            return self.fail(node, format!("{} is out of range; allowed: {allowed}{why}", node.show()));
+            let allowed = range.condition(self.name) + &self.si(dimension);
+            let why = if range.why.is_empty() { String::new() } else { format!(": {}", range.why) };
+            return self.fail(node, format!("E0010: {} is outside the allowed range ({allowed}){why}.", node.show()));
         }
         let divides = dimension == Dimension::Time || !range.contains(0.0);
         if divides && value != 0.0 && value.abs() < dimension.least() {
-            let least = dimension.least();
-            return self
-                .fail(node, format!("{} is out of range; {dimension} is at least {least:e} in SI", node.show()));
+            let (least, unit) = (dimension.least(), self.si(dimension));
+            let found = node.show();
+            let message = format!(
+                "E0010: {found} is too close to zero: {dimension} is at least {least:e}{unit}. Check the value."
+            );
+            return self.fail(node, message);
         }
         self.bounded(node, value, dimension)
+    }
+
+    /// Where a unit weight and a density of a material are mixed up: the key that is meant.
+    fn key_meant(&self, node: &Node) -> &'static str {
+        let Value::Text(text) = &node.value else { return "" };
+        let has_unit_of = |dimension| unit::parse(text, dimension).is_ok();
+        match self.name {
+            "density" if self.path.starts_with("material.") && has_unit_of(Dimension::UnitWeight) => {
+                " Use the key `unit_weight`."
+            }
+            "unit_weight" if has_unit_of(Dimension::Density) => " Use the key `density`.",
+            _ => "",
+        }
+    }
+
+    /// The SI unit of a dimension behind a number; nothing of what has none, as pseudo-time.
+    fn si(&self, dimension: Dimension) -> String {
+        let unit = match dimension {
+            Dimension::Time | Dimension::Velocity if self.pseudo_time => None,
+            Dimension::LineForce if self.geometry != Geometry::PlaneStrain => Dimension::Force.units().next(),
+            _ => dimension.units().next(),
+        };
+        unit.map_or(String::new(), |unit| format!(" {unit}"))
     }
 
     /// The value of a number with a unit, or what is wrong with it.
     fn worded(&self, node: &Node, text: &str, dimension: Dimension) -> Result<f64, String> {
         match dimension {
-            Dimension::Time if self.pseudo_time => {
-                Err(format!("found {}; quasi-static time is a pseudo-time without unit: a number", node.show()))
-            }
+            Dimension::Time if self.pseudo_time => Err(format!(
+                "E0023: {} has a unit, but time is a dimensionless pseudo-time in a quasi-static analysis. Write a \
+                     number without unit.",
+                node.show()
+            )),
             Dimension::Velocity if self.pseudo_time => Err(format!(
-                "found {}; quasi-static time has no unit: a number, m per unit of pseudo-time",
+                "E0023: {} has a unit of time, but time is a dimensionless pseudo-time in a quasi-static analysis. \
+                 Write a number, in m per unit of pseudo-time.",
                 node.show()
             )),
             Dimension::Density if unit::parse(text, Dimension::UnitWeight).is_ok() => Err(format!(
@@ -191,7 +230,11 @@ impl ValueReader<'_, '_> {
     fn bounded(&mut self, node: &Node, value: f64, dimension: Dimension) -> Option<f64> {
         let most = dimension.limit();
         if value.abs() > most {
-            return self.fail(node, format!("{} is out of range; {dimension} is at most {most:e} in SI", node.show()));
+            let (found, unit) = (node.show(), self.si(dimension));
+            let message = format!(
+                "E0010: {found} is too large: {dimension} is at most {most:e}{unit}. Check the value and its unit."
+            );
+            return self.fail(node, message);
         }
         Some(value)
     }
@@ -219,7 +262,11 @@ impl ValueReader<'_, '_> {
             let wrong = read.iter().rev().take(WRONG_ROWS).filter(|row| row.is_none()).count();
             if wrong == WRONG_ROWS && read.len() < items.len() {
                 let more = items.len() - read.len();
-                return self.fail(node, format!("{more} further rows were not read"));
+                let message = format!(
+                    "E0009: {more} more rows were not read, because {WRONG_ROWS} rows in succession are wrong. \
+                     Correct those first."
+                );
+                return self.fail(node, message);
             }
         }
         read.into_iter().collect::<Option<Vec<ListRow>>>().map(Datum::Rows)
@@ -237,12 +284,8 @@ impl ValueReader<'_, '_> {
         let (unit, message) = unit_of(rows.first().filter(|_| rows.len() > 1)?)?;
         let is_of_all = rows[1..].iter().all(|row| unit_of(row).is_some_and(|(other, _)| other == unit));
         let number = column + 1;
-        is_of_all.then(|| {
-            format!(
-                "column {number} of all {} rows: {message}; of rows from a file the heading says the unit",
-                rows.len()
-            )
-        })
+        let all = with_context(&message, &format!("column {number} of all {} rows", rows.len()));
+        is_of_all.then(|| all + " In a data file, change the unit in the heading.")
     }
 
     fn row(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<ListRow> {
@@ -280,8 +323,8 @@ impl ValueReader<'_, '_> {
         match text.parse::<u64>() {
             Ok(count) if (least..=most).contains(&count) => Some(Datum::Count(count)),
             _ => {
-                let allowed = format!("{least} <= {} <= {most}", self.name);
-                self.fail(node, format!("{} is out of range; allowed: {allowed}", shortened(text)))
+                let (found, name) = (shortened(text), self.name);
+                self.fail(node, format!("E0010: {found} is outside the allowed range ({least} <= {name} <= {most})."))
             }
         }
     }
@@ -296,11 +339,19 @@ impl ValueReader<'_, '_> {
             return None;
         }
         if words.later.contains(&text.as_str()) {
-            return self.fail(node, format!("\"{text}\" is not available yet; allowed: {}", self.kind));
+            return self.fail(node, format!("E0012: the value \"{text}\" is not available yet. Use {}.", self.kind));
         }
         let meant = words.misnomers.iter().find(|(word, _)| word == text);
-        let near = meant.map_or_else(|| hint(text, words.words()), |(_, meant)| format!(": {meant}"));
-        self.fail(node, format!("expected {}, found {}{near}", self.kind, node.show()))
+        let near = match (meant, hint(text, words.words())) {
+            (Some((_, meant)), _) if code_of(meant).is_some() => return self.fail(node, *meant),
+            (Some((_, meant)), _) => format!(". {meant}."),
+            (None, hint) if hint.is_empty() => ".".to_owned(),
+            (None, hint) => hint,
+        };
+        self.fail(
+            node,
+            format!("E0017: this value is not allowed: expected {}, found {}{near}", self.kind, node.show()),
+        )
     }
 
     /// Words of a list, in its order; none twice.
@@ -310,7 +361,7 @@ impl ValueReader<'_, '_> {
         for item in items {
             let word = match self.choice(item, words)? {
                 Datum::Word(word) if found.iter().any(|other| other == word) => {
-                    return self.fail(item, format!("\"{word}\" is named twice"));
+                    return self.fail(item, format!("E0019: the list has \"{word}\" twice. Delete one of them."));
                 }
                 Datum::Word(word) => word,
                 _ => return None,

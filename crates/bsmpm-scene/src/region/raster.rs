@@ -5,6 +5,9 @@ use bsmpm::boundary::rigid::Terrain;
 /// Parts of the spacing by which posts may miss their places: rounding of what wrote them.
 const ROUNDING: f64 = 1e-3;
 
+/// Of too few rows for a raster.
+const TOO_FEW: &str = "E0032: a raster needs at least two points along x and two along y. Add rows.";
+
 /// Heights at the posts of a regular raster, and a base under them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Raster {
@@ -29,7 +32,7 @@ impl Raster {
     /// Of rows [x, y, z] in any order, on a level. Says what is wrong with them.
     pub(crate) fn new(rows: &[[f64; 3]], level: f64) -> Result<Self, String> {
         if rows.len() < 4 {
-            return Err("a raster has two posts along x and two along y at least".into());
+            return Err(TOO_FEW.into());
         }
         let places = [0, 1].map(|axis| {
             let mut along: Vec<f64> = rows.iter().map(|row| row[axis]).collect();
@@ -43,13 +46,14 @@ impl Raster {
             steps.filter(|step| *step > 1e-6 * far).fold(f64::INFINITY, f64::min)
         });
         if spacing.iter().any(|step| !step.is_finite()) {
-            return Err("a raster has two posts along x and two along y at least".into());
+            return Err(TOO_FEW.into());
         }
         let count = [0, 1].map(|axis| ((ends[axis][1] - ends[axis][0]) / spacing[axis]).round() as usize + 1);
         if count[0].saturating_mul(count[1]) != rows.len() {
             let [x, y] = count;
             return Err(format!(
-                "{} rows are no regular raster: posts every {} m along x and {} m along y would be {x} x {y}",
+                "E0032: the {} rows are not a regular raster: spacings of {} m along x and {} m along y need {x} x \
+                 {y} rows. Interpolate them to a raster.",
                 rows.len(),
                 spacing[0],
                 spacing[1]
@@ -63,8 +67,10 @@ impl Raster {
             let is_off = (0..2).any(|axis| (part[axis] - part[axis].round()).abs() > ROUNDING);
             let place = post[1] * count[0] + post[0];
             if is_off || !top[place].is_nan() {
-                let what = if is_off { "lies beside the posts of a regular raster" } else { "has its post twice" };
-                return Err(format!("[{}, {}] {what}", row[0], row[1]));
+                let what =
+                    if is_off { "is not a point of the regular raster of the other rows" } else { "occurs twice" };
+                let [x, y, _] = row;
+                return Err(format!("E0032: the point [{x}, {y}] {what}. Interpolate the rows to a raster."));
             }
             top[place] = row[2];
         }
@@ -79,7 +85,9 @@ impl Raster {
             off <= ROUNDING * self.spacing[axis]
         };
         if self.count != base.count || !near(0) || !near(1) {
-            return Err("base and top have not the same posts".into());
+            return Err(
+                "E0032: `base` and `top` are rasters of different points. Interpolate both to the same raster.".into(),
+            );
         }
         Self { base: base.top, ..self }.checked()
     }
@@ -89,10 +97,14 @@ impl Raster {
         if let Some((post, (top, base))) = posts.find(|(_, (top, base))| top < base) {
             let at = [post % self.count[0], post / self.count[0]];
             let [x, y] = [0, 1].map(|axis| self.lower[axis] + at[axis] as f64 * self.spacing[axis]);
-            return Err(format!("at [{x}, {y}] the top, {top}, is below the base, {base}"));
+            return Err(format!(
+                "E0033: at [{x}, {y}] the top ({top} m) is below the base ({base} m). Correct the heights."
+            ));
         }
         if self.top == self.base {
-            return Err("top and base are the same: the body is empty".into());
+            return Err(
+                "E0033: `top` and `base` have the same heights, so that the body is empty. Correct the heights.".into(),
+            );
         }
         Ok(self)
     }
@@ -178,13 +190,13 @@ mod tests {
             assert!(message.contains(what), "{message}");
         };
         let mut posts = rows(|_, _| 1.0);
-        says(&posts, 2.0, "is below the base, 2");
+        says(&posts, 2.0, "is below the base (2 m)");
         says(&posts, 1.0, "the body is empty");
         posts[7][0] += 0.1;
-        says(&posts, 0.0, "no regular raster");
+        says(&posts, 0.0, "not a regular raster");
         let mut twice = rows(|_, _| 1.0);
         twice[3] = twice[2];
-        says(&twice, 0.0, "has its post twice");
-        says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "two posts along x and two along y");
+        says(&twice, 0.0, "occurs twice");
+        says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "two points along x and two along y");
     }
 }

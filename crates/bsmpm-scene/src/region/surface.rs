@@ -34,14 +34,14 @@ impl Surface {
         let mut triangles: Vec<[[f64; 3]; 3]> =
             rows.map(|row| [0, 1, 2].map(|k| corner(&row, k))).filter(|[a, b, c]| a != b && b != c && c != a).collect();
         if triangles.is_empty() {
-            return Err("it has no triangle".into());
+            return Err("E0034: the surface has no triangle with three different corners. Check its file.".into());
         }
         closed(&triangles)?;
         let bounds = bounds(&triangles);
         let volume = volume(&triangles, bounds[0]);
         let size: f64 = (0..3).map(|axis| bounds[1][axis] - bounds[0][axis]).product();
         if volume.abs() <= ROUNDING * size {
-            return Err("it encloses no volume".into());
+            return Err("E0034: the surface encloses no volume. Export it as a closed surface.".into());
         }
         if volume < 0.0 {
             triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
@@ -169,7 +169,8 @@ impl Surface {
             if !(0..=1).contains(&depth) && z - last > ROUNDING * height {
                 let [x, y] = at;
                 return Err(format!(
-                    "near [{x:.6}, {y:.6}, {z:.6}] it intersects itself, or a part of it is turned inside out"
+                    "E0035: the surface intersects itself near [{x:.6}, {y:.6}, {z:.6}], or a part of it is turned \
+                     inside out. Repair it with a mesh tool."
                 ));
             }
             (depth, last) = (depth - crossing, z);
@@ -236,8 +237,8 @@ fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), String> {
     match edges.values().find(|sides| sum(sides) != 0) {
         None => Ok(()),
         Some(sides) => Err(format!(
-            "it is not closed: {open} of its edges, the first from {:?} to {:?}, have not one triangle on each side that \
-             turn alike; mend it with a mesh tool (weld vertices, fill holes, make normals consistent)",
+            "E0034: the surface is not closed at {open} edges, the first from {:?} to {:?}. Weld vertices, fill holes \
+             and make normals consistent with a mesh tool.",
             sides[0].ends[0], sides[0].ends[1]
         )),
     }
@@ -428,13 +429,13 @@ mod tests {
         };
         let block = cuboid([0.0; 3], [1.0; 3]);
         says(Vec::new(), "no triangle");
-        says(block[1..].to_vec(), "not closed: 3 of its edges");
+        says(block[1..].to_vec(), "not closed at 3 edges");
         let mut one_turned = block.clone();
         one_turned[..1].clone_from_slice(&turned(block[..1].to_vec()));
-        says(one_turned, "not closed: 3 of its edges");
+        says(one_turned, "not closed at 3 edges");
         says([block.clone(), turned(block.clone())].concat(), "encloses no volume");
         says([block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(), "intersects itself");
-        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "turned inside out");
+        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "partly inside out");
         // Blocks with sides in common that overlap by little, and bars across each other, with sides in common and not.
         says([block.clone(), cuboid([0.99, 0.0, 0.0], [1.99, 1.0, 1.0])].concat(), "intersects itself");
         says([block.clone(), cuboid([0.3, 0.2, 0.99], [0.4, 0.5, 2.0])].concat(), "intersects itself");

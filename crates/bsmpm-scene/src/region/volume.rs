@@ -62,8 +62,8 @@ impl Volume {
         // A factor below zero: cells that seem whole hold more than the body.
         if matches!(made.filling, Filling::Lattice { .. }) && (unseen || made.scale() <= 0.0) {
             return Err(
-                "it is so thin that it lies between the lines on which its volume is found; take smaller cells, or \
-                        thicker walls"
+                "E0037: the shape is so thin that it lies between the lines on which its volume is computed. Use \
+                 smaller cells, or make it thicker."
                     .into(),
             );
         }
@@ -246,12 +246,11 @@ impl Filling {
         if cut.is_empty() && matches!(whole, SolidShape::Box { .. }) {
             return Ok(Self::Box);
         }
-        let prism = (0..3).find_map(|along| Some((along, through(whole, cut, along)?)));
-        if let Some((along, (edges, _))) = prism {
+        let prism = (0..3).find_map(|along| Some((along, through(whole, cut, along)?, whole.along(along)?.0)));
+        if let Some((along, (edges, _), section)) = prism {
             let [across, up] = plane(along);
             let plane =
                 GridSpec { axes: vec![axes[across].clone(), axes[up].clone()], order: 1, lines: Default::default() };
-            let Some((section, _)) = whole.along(along) else { return Err("no prism".to_owned()) };
             let lower = plane.lower();
             let ends = bounds.map(|corner| corner[along]);
             let bounds = bounds.map(|corner| [corner[across] + lower[0], corner[up] + lower[1]]);
@@ -264,7 +263,9 @@ impl Filling {
         let rows = reached(&axes[2], [lower[2], upper[2]]).len() * n;
         if lines * (edges(whole) + cut.iter().map(edges).sum::<usize>() + rows) as u128 > MOST_WORK {
             return Err(
-                "it has too many cells for its shape, whose points would take too long; take larger cells".into()
+                "E0036: the shape has so many cells that generating its material points would take too long. Use \
+                 larger cells."
+                    .into(),
             );
         }
         Ok(Self::Lattice { scale: 1.0 })

@@ -28,91 +28,93 @@ const fn anywhere(names: &'static [&'static str], text: &'static str) -> Answer 
 const ANSWERS: &[Answer] = &[
     symbol(
         &["E", "Eref", "E50", "E_ref", "modulus"],
-        "Young's modulus is `young`, one constant; of E50 take the value at the stress of the problem",
+        "Young's modulus is the key `young`, a constant. For E50 take its value at the stress of the problem.",
     ),
-    symbol(&["nu", "poisson_ratio", "poissons_ratio"], "Poisson's ratio is `poisson`"),
-    symbol(&["phi", "phi_prime", "phi'", "friction_angle_deg"], "the friction angle is `friction_angle`, in degrees"),
-    symbol(&["psi", "psi'"], "the dilation angle is `dilation_angle`, in degrees"),
-    symbol(&["c", "c'", "c_prime"], "the cohesion is `cohesion`"),
+    symbol(&["nu", "poisson_ratio", "poissons_ratio"], "Poisson's ratio is the key `poisson`."),
+    symbol(
+        &["phi", "phi_prime", "phi'", "friction_angle_deg"],
+        "The friction angle is the key `friction_angle`, in degrees.",
+    ),
+    symbol(&["psi", "psi'"], "The dilation angle is the key `dilation_angle`, in degrees."),
+    symbol(&["c", "c'", "c_prime"], "The cohesion is the key `cohesion`."),
     symbol(
         &["su", "Su", "s_u", "cu", "c_u", "undrained_strength"],
-        "the undrained shear strength is `cohesion` with model = \"tresca\"",
+        "The undrained shear strength is the key `cohesion` with model = \"tresca\".",
     ),
-    symbol(&["gamma", "unit_wt"], "the unit weight is `unit_weight`"),
-    symbol(&["gamma_sat", "gammasat"], "the saturated unit weight is `saturated_unit_weight`"),
-    symbol(&["gamma_d", "gamma_dry", "gamma_unsat"], "the unit weight above the water table is `unit_weight`"),
-    symbol(&["rho"], "the density is `density`"),
+    symbol(&["gamma", "unit_wt"], "The unit weight is the key `unit_weight`."),
+    symbol(&["gamma_sat", "gammasat"], "The saturated unit weight is the key `saturated_unit_weight`."),
+    symbol(&["gamma_d", "gamma_dry", "gamma_unsat"], "The unit weight above the water table is the key `unit_weight`."),
+    symbol(&["rho"], "The density is the key `density`."),
     symbol(
         &["e", "e0", "e_0", "e_init"],
-        "the void ratio is `void_ratio` (modified-cam-clay), and the porosity e0/(1 + e0) is `porosity`",
+        "The void ratio of modified Cam-clay is the key `void_ratio`; the porosity e0/(1 + e0) is the key `porosity`.",
     ),
-    symbol(&["n", "n0"], "the porosity is `porosity`"),
+    symbol(&["n", "n0"], "The porosity is the key `porosity`."),
     symbol(
         &["k", "kx", "ky", "ksat", "k_sat"],
-        "the hydraulic conductivity (m/s) is `permeability`, one value or one along each axis",
+        "The hydraulic conductivity (m/s) is the key `permeability`: one value, or one along each axis.",
     ),
-    symbol(&["M"], "the slope of the critical state line is `critical_state_ratio`"),
-    symbol(&["OCR"], "the overconsolidation ratio is `ocr`"),
+    symbol(&["M"], "The slope of the critical state line is the key `critical_state_ratio`."),
+    symbol(&["OCR"], "The overconsolidation ratio is the key `ocr`."),
     symbol(
         &["K0", "K_0", "k_0", "K0nc"],
-        "the ratio of horizontal to vertical effective stress at the start is `k0`, in overconsolidated soil not the normally \
-             consolidated one",
+        "The coefficient of earth pressure at rest is the key `k0`. For overconsolidated soil do not take its normally \
+         consolidated value.",
     ),
     symbol(
         &["pc", "p_c", "pc0"],
-        "the isotropic preconsolidation pressure is `preconsolidation`, the overconsolidation ratio `ocr`",
+        "The isotropic preconsolidation pressure is the key `preconsolidation`; the overconsolidation ratio is `ocr`.",
     ),
     symbol(
         &["G", "shear_modulus", "K", "bulk_modulus"],
-        "the elastic moduli are `young` and `poisson`: E = 2 G (1 + nu) = 3 K (1 - 2 nu)",
+        "The elastic constants are the keys `young` and `poisson`: E = 2 G (1 + nu) = 3 K (1 - 2 nu).",
     ),
-    symbol(&["St", "S_t"], "the sensitivity is `sensitivity` (sensitive-clay)"),
+    symbol(&["St", "S_t"], "The sensitivity is the key `sensitivity`, of model = \"sensitive-clay\"."),
     symbol(
         &["tension_cutoff", "tension_cut_off", "tensile_strength"],
-        "a tension cut-off is not available: the apex of the Mohr-Coulomb pyramid is at a mean tension of c / tan(phi). A smaller \
-         `cohesion` lowers it, and the shear strength with it; without cohesion use separation = \"gap\"",
+        "E0012: a tension cut-off is not available: the largest mean tension is c / tan(phi). Reduce `cohesion`, \
+         which also reduces the shear strength; without cohesion use separation = \"gap\".",
     ),
     symbol(
         &["adhesion"],
-        "an adhesion is not available: an interface is \"smooth\", \"rough\" or has a `friction_coefficient`",
+        "E0012: an adhesion of an interface is not available. Use \"smooth\", \"rough\" or a `friction_coefficient`.",
     ),
     top(
         &["groundwater", "phreatic", "water_table", "pore_water"],
-        "water in the ground is `[water]`, with `level` or `line`",
+        "Water in the ground is the table `[water]`, with `level` or `line`.",
     ),
     top(
         &[
             "anchor", "anchors", "beam", "beams", "plate", "plates", "pile", "piles", "geogrid", "geogrids", "strut",
             "wall", "walls",
         ],
-        "structural elements are not available: use an elastic [[body]] with the same bending stiffness, or [[rigid]]; anchors and \
-         geogrids have no equivalent",
+        "E0012: structural elements are not available. Use an elastic [[body]] with the same bending stiffness, or a \
+         [[rigid]] body. Anchors and geogrids have no equivalent.",
     ),
-    top(&["bodies"], "bodies are `[[body]]`, one table each"),
-    top(&["materials"], "materials are `[material.NAME]`, one table each"),
-    top(&["load", "loads", "surcharge"], "loads are `[[traction]]` and `[[point_load]]`"),
-    top(&["boundaries", "supports", "fixities"], "supports are `[boundary]`"),
-    top(&["phase", "phases", "stages"], "phases are `[[stage]]`"),
-    top(&["mesh"], "the background grid is `[grid]`"),
+    top(&["bodies"], "Bodies are tables `[[body]]`, one for each."),
+    top(&["materials"], "Materials are tables `[material.NAME]`, one for each."),
+    top(&["load", "loads", "surcharge"], "Loads are tables `[[traction]]` and `[[point_load]]`."),
+    top(&["boundaries", "supports", "fixities"], "Supports of the grid's faces are the table `[boundary]`."),
+    top(&["phase", "phases", "stages"], "Construction stages are tables `[[stage]]`."),
+    top(&["mesh"], "The background grid is the table `[grid]`."),
     top(
         &["earthquake", "seismic"],
-        "an earthquake is `[shaking]`; a pseudo-static analysis adds the horizontal acceleration to `gravity.acceleration`",
+        "A ground motion is the table `[shaking]`; for a pseudo-static analysis add a horizontal part to \
+         `gravity.acceleration`.",
     ),
-    anywhere(
-        &["probe"],
-        "what is meant is [[history]] with `quantity` and `at`; surface = true reads the surface itself",
-    ),
+    anywhere(&["probe"], "A quantity at a place over time is a table [[history]] with `quantity` and `at`."),
     anywhere(
         &["regularisation", "regularization"],
-        "what is meant is `band_width`, the width of the shear band for which softening_strain was determined",
+        "The width of the shear band, for which `softening_strain` was determined, is the key `band_width`.",
     ),
     anywhere(
         &["traction_path"],
-        "what is meant is `stress_path` for a traction and `pressure_path` for a pressure, both histories in time",
+        "A traction that changes with time is the key `stress_path`, a pressure the key `pressure_path`.",
     ),
 ];
 
-/// What to write for a key that a table does not have, if others than its author have typed it before.
+/// What to write for a key that a table does not have, if others than its author have typed it before. It begins with
+/// its code where what is meant does not exist.
 pub(crate) fn answer(table: &Table, key: &str) -> Option<&'static str> {
     let is_meant = |answer: &&Answer| answer.table.is_empty() || answer.table == table.header;
     ANSWERS.iter().filter(is_meant).find(|answer| answer.names.contains(&key)).map(|answer| answer.text)

@@ -34,16 +34,16 @@ choice! {
         /// Dense granular flow whose friction grows with the rate of shear.
         MuI = "mu-i",
     } misnomers [
-        "hardening-soil": "not available; use \"mohr-coulomb\", or \"modified-cam-clay\" for soft clay",
-        "hs-small": "not available; use \"mohr-coulomb\", or \"modified-cam-clay\" for soft clay",
-        "soft-soil": "not available; use \"modified-cam-clay\"",
-        "cam-clay": "not available; use \"modified-cam-clay\"",
-        "hoek-brown": "not available; use \"mohr-coulomb\" with the strength at the stress level of the problem",
-        "hypoplastic": "not available; use \"mohr-coulomb-softening\"",
-        "hypoplasticity": "not available; use \"mohr-coulomb-softening\"",
-        "linear-elastic": "\"elastic\" is elastic at any strain",
-        "linear_elastic": "\"elastic\" is elastic at any strain",
-        "neo-hookean": "not available; use \"elastic\""
+        "hardening-soil": "E0012: this model is not available. Use \"mohr-coulomb\", or \"modified-cam-clay\" for soft clay.",
+        "hs-small": "E0012: this model is not available. Use \"mohr-coulomb\", or \"modified-cam-clay\" for soft clay.",
+        "soft-soil": "E0012: this model is not available. Use \"modified-cam-clay\".",
+        "cam-clay": "E0012: this model is not available. Use \"modified-cam-clay\".",
+        "hoek-brown": "E0012: this model is not available. Use \"mohr-coulomb\" with the strength at the stress level of the problem.",
+        "hypoplastic": "E0012: this model is not available. Use \"mohr-coulomb-softening\".",
+        "hypoplasticity": "E0012: this model is not available. Use \"mohr-coulomb-softening\".",
+        "linear-elastic": "Use \"elastic\"",
+        "linear_elastic": "Use \"elastic\"",
+        "neo-hookean": "E0012: this model is not available. Use \"elastic\"."
     ] earlier ["hencky": "elastic"]
 }
 

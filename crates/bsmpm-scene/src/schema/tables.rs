@@ -114,7 +114,8 @@ static ANALYSIS: Table = Table {
 };
 
 const GROWTH: Range = Range::of(Included(1.0), Included(10.0));
-const GAMMA: Range = Range { lower: Included(0.5), upper: Included(1.0), why: "below 1/2 it gains energy" };
+const GAMMA: Range =
+    Range { lower: Included(0.5), upper: Included(1.0), why: "below 0.5 the time integration creates energy" };
 
 static GRID: Table = Table {
     header: "[grid]",

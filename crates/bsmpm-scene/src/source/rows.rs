@@ -1,9 +1,9 @@
 //! Rows of numbers from text files beside the case: `{ file = "record.csv", along = "x" }` in the place of a list.
 
-use super::{MAX_BYTES, stl};
+use super::{LIMIT, MAX_BYTES, bounded, stl};
 use crate::words::{Geometry, Word};
-use bsmpm_messages::{code_of, without_code};
-use std::io::{self, Error, ErrorKind, Read};
+use bsmpm_messages::with_context;
+use std::io::{self, Error, ErrorKind};
 use std::ops::Range;
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
@@ -31,16 +31,10 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     references.sort_by_key(|reference: &FileReference<'_>| reference.span.start);
     let (mut whole, mut from) = (String::with_capacity(text.len()), 0);
     for FileReference { span, file, along } in references {
-        let in_file = |error: Error| Error::new(error.kind(), of_file(file, &error.to_string()));
+        let in_file = |error: Error| Error::new(error.kind(), with_context(&error.to_string(), file));
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(in_file)?;
-        let found = if stl::is_binary(&bytes) {
-            stl::triangles(&bytes)
-        } else if file.to_ascii_lowercase().ends_with(".stl") && bytes.contains(&0) {
-            Err(stl::broken(&bytes))
-        } else {
-            text_rows(bytes, (along, axes))
-        };
+        let found = rows_of(file, bytes, (along, axes));
         whole.push_str(&found.map_err(in_file)?);
         from = span.end;
     }
@@ -48,20 +42,27 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     Ok(whole)
 }
 
-/// A message with the file that it concerns behind its code.
-fn of_file(file: &str, message: &str) -> String {
-    match code_of(message) {
-        Some(code) => format!("{code}: {file}: {}", without_code(message)),
-        None => format!("{file}: {message}"),
-    }
-}
-
 /// The axis that a file names, if it does, and those that the geometry has.
 type AxisNames<'a> = (Option<&'a str>, &'a [&'a str]);
 
+/// Rows of a file, whose format follows from its name and its bytes.
+fn rows_of(file: &str, bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
+    let has_ending = |ending: &str| file.to_ascii_lowercase().ends_with(ending);
+    if has_ending(".at2") {
+        Err(Error::new(ErrorKind::InvalidData, PEER))
+    } else if stl::is_binary(&bytes) {
+        stl::triangles(&bytes)
+    } else if has_ending(".stl") && bytes.contains(&0) {
+        Err(stl::broken(&bytes))
+    } else {
+        text_rows(bytes, along)
+    }
+}
+
 /// Rows of whatever text holds them.
 fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
-    let text = String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "no UTF-8 text"))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| Error::new(ErrorKind::InvalidData, "E0002: the file is not UTF-8 text. Save it as UTF-8."))?;
     let begins = |word: &str| text.trim_start().get(..word.len()).is_some_and(|of| of.eq_ignore_ascii_case(word));
     if begins("PEER") || text.lines().take(4).any(|line| line.trim_start().to_ascii_uppercase().starts_with("NPTS")) {
         return Err(Error::new(ErrorKind::InvalidData, PEER));
@@ -79,13 +80,9 @@ const PEER: &str = "E0049: this is a record in PEER's format (.AT2), which is no
 
 /// The bytes of a file that is not longer than a case may be.
 fn read(path: &Path) -> io::Result<Vec<u8>> {
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(Error::new(ErrorKind::InvalidInput, "not a regular file"));
-    }
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    let bytes = bounded(path)?;
     if bytes.len() > MAX_BYTES {
-        let message = format!("more than {MAX_BYTES} bytes, the limit of a whole case; thin the rows to the steps");
+        let message = format!("E0004: the file has more than {LIMIT} MiB, the limit. Reduce the number of rows.");
         return Err(Error::new(ErrorKind::InvalidData, message));
     }
     Ok(bytes)
@@ -114,10 +111,13 @@ fn collect<'a>(value: &'a toml::Spanned<DeValue<'_>>, text: &str, references: &m
 fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
     let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
     if let Some(other) = along.filter(|along| !axes.contains(along)) {
-        return Err(bad(format!("along = \"{other}\"; allowed: \"{}\"", axes.join("\", \""))));
+        let axes = axes.join("\", \"");
+        return Err(bad(format!("E0028: along = \"{other}\" is not an axis of this case. Use one of \"{axes}\".")));
     }
     if let Some(heading) = hidden(text) {
-        return Err(bad(format!("`{heading}` looks like a heading with units behind a `#`; take the # away")));
+        return Err(bad(format!(
+            "E0029: the units in `{heading}` are not read, because `#` makes the line a comment. Delete the `#`."
+        )));
     }
     let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     let lines = lines.map(|(number, line)| (number + 1, line.split('#').next().unwrap_or_default().trim()));
@@ -130,15 +130,24 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         }
         let expected = *width.get_or_insert(if units.is_empty() { cells.len() } else { units.len() });
         if cells.len() != expected {
-            return Err(bad(format!("line {number} has {} cells, not {expected}", cells.len())));
+            let found = cells.len();
+            return Err(bad(format!(
+                "E0028: line {number} has {found} columns where {expected} are expected. Give all rows the same number of \
+                 columns."
+            )));
         }
         if along.is_some() && expected != 2 {
-            return Err(bad(format!("along needs two columns, a time and a number; line {number} has {expected}")));
+            return Err(bad(format!(
+                "E0028: with `along` a row has two columns, a time and a value, but line {number} has {expected}. \
+                 Delete `along`."
+            )));
         }
         let mut row = Vec::with_capacity(cells.len() + 1);
         for (column, cell) in cells.iter().enumerate() {
             let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
-            let value = value.ok_or_else(|| bad(format!("line {number}: `{cell}` is no number")))?;
+            let value = value.ok_or_else(|| {
+                bad(format!("E0028: `{cell}` in line {number} of the data file is not a number. Correct the line."))
+            })?;
             row.push(match units.get(column) {
                 Some(Some(unit)) => format!("\"{value:?} {unit}\""),
                 _ => format!("{value:?}"),
@@ -151,7 +160,7 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         whole.push_str(&format!("[{}],", row.join(",")));
     }
     if width.is_none() {
-        return Err(bad("no row of numbers".to_owned()));
+        return Err(bad("E0028: the data file has no row of numbers. Check its name.".to_owned()));
     }
     whole.push(']');
     Ok(whole)
@@ -165,10 +174,18 @@ fn grid(text: &str) -> io::Result<String> {
     let mut header = std::collections::BTreeMap::new();
     while let Some(key) = words.next_if(|word| word.parse::<f64>().is_err()) {
         let value = words.next().and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
-        header.insert(key.to_ascii_lowercase(), value.ok_or_else(|| bad(format!("{key}: no number in the header")))?);
+        header.insert(
+            key.to_ascii_lowercase(),
+            value.ok_or_else(|| {
+                bad(format!("E0030: `{key}` in the header of the ASCII grid has no number. Correct the header."))
+            })?,
+        );
     }
     let given = |key: &str| header.get(key).copied();
-    let needed = |key: &str| given(key).ok_or_else(|| bad(format!("the header has no {key}")));
+    let needed = |key: &str| {
+        given(key)
+            .ok_or_else(|| bad(format!("E0030: the header of the ASCII grid has no `{key}`. Add a line with it.")))
+    };
     let (columns, lines, cell) = (needed("ncols")?, needed("nrows")?, needed("cellsize")?);
     let first = |axis: &str| match given(&format!("{axis}llcenter")) {
         Some(center) => Ok(center),
@@ -177,19 +194,29 @@ fn grid(text: &str) -> io::Result<String> {
     let (x, y) = (first("x")?, first("y")?);
     let heights: Vec<&str> = words.collect();
     if columns < 2.0 || lines < 2.0 || columns.fract() + lines.fract() != 0.0 || cell <= 0.0 {
-        return Err(bad("ncols and nrows are whole numbers above 1, and cellsize is above 0".to_owned()));
+        let message = "E0030: the ASCII grid needs whole numbers above 1 as ncols and nrows, and a cellsize above 0. \
+        Correct its header.";
+        return Err(bad(message.to_owned()));
     }
     if heights.len() as f64 != columns * lines {
-        return Err(bad(format!("{} heights, not ncols x nrows = {}", heights.len(), columns * lines)));
+        return Err(bad(format!(
+            "E0030: the ASCII grid has {} heights, but ncols times nrows is {}. Export it again.",
+            heights.len(),
+            columns * lines
+        )));
     }
     let mut whole = String::from("[");
     for (number, height) in heights.iter().enumerate() {
         let (row, column) = (number / columns as usize, number % columns as usize);
         let value = height.parse::<f64>().ok().filter(|value| value.is_finite());
-        let value =
-            value.ok_or_else(|| bad(format!("row {}, column {}: `{height}` is no number", row + 1, column + 1)))?;
+        let place = format!("row {}, column {}", row + 1, column + 1);
+        let value = value.ok_or_else(|| {
+            bad(format!("E0030: `{height}` in {place} of the ASCII grid is not a number. Correct the height."))
+        })?;
         if given("nodata_value") == Some(value) {
-            return Err(bad(format!("row {}, column {}: no data: fill it, or cut the grid", row + 1, column + 1)));
+            return Err(bad(format!(
+                "E0030: {place} of the ASCII grid has no data. Fill it, or cut the grid to the part that has data."
+            )));
         }
         let at = [x + column as f64 * cell, y + (lines - 1.0 - row as f64) * cell];
         whole.push_str(&format!("[{:?},{:?},{value:?}],", at[0], at[1]));
@@ -224,7 +251,7 @@ fn unit(heading: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{grid, rows};
+    use super::{grid, rows, rows_of};
 
     const PLANE: &[&str] = &["x", "y"];
 
@@ -234,11 +261,26 @@ mod tests {
         let parsed = grid(&format!("{header}1 2\n3 4\n")).unwrap();
         assert_eq!(parsed, "[[11.0,3.0,1.0],[13.0,3.0,2.0],[11.0,1.0,3.0],[13.0,1.0,4.0],]");
         let message = |text: &str| grid(text).unwrap_err().to_string();
-        assert_eq!(message(&format!("{header}1 2\n3 -9999\n")), "row 2, column 2: no data: fill it, or cut the grid");
-        assert_eq!(message(&format!("{header}1 2\n3\n")), "3 heights, not ncols x nrows = 4");
-        assert_eq!(message("ncols 2\nnrows 2\n1 2\n3 4"), "the header has no cellsize");
-        assert_eq!(message("ncols x\n"), "ncols: no number in the header");
-        assert_eq!(message(&format!("{header}1 2\n3 nan\n")), "row 2, column 2: `nan` is no number");
+        assert_eq!(
+            message(&format!("{header}1 2\n3 -9999\n")),
+            "E0030: row 2, column 2 of the ASCII grid has no data. Fill it, or cut the grid to the part that has data."
+        );
+        assert_eq!(
+            message(&format!("{header}1 2\n3\n")),
+            "E0030: the ASCII grid has 3 heights, but ncols times nrows is 4. Export it again."
+        );
+        assert_eq!(
+            message("ncols 2\nnrows 2\n1 2\n3 4"),
+            "E0030: the header of the ASCII grid has no `cellsize`. Add a line with it."
+        );
+        assert_eq!(
+            message("ncols x\n"),
+            "E0030: `ncols` in the header of the ASCII grid has no number. Correct the header."
+        );
+        assert_eq!(
+            message(&format!("{header}1 2\n3 nan\n")),
+            "E0030: `nan` in row 2, column 2 of the ASCII grid is not a number. Correct the height."
+        );
     }
 
     #[test]
@@ -254,15 +296,35 @@ mod tests {
     }
 
     #[test]
+    fn a_peer_record_is_refused_with_what_to_do() {
+        let record = b"PEER\nKOBE\nACCELERATION\nNPTS= 2, DT= .01 SEC\n 1.0E-3 2.0E-3\n".to_vec();
+        let message = rows_of("kobe.AT2", record, (None, PLANE)).unwrap_err().to_string();
+        assert!(message.starts_with("E0012: ") && message.contains("t [s], a [g]"), "{message}");
+    }
+
+    #[test]
     fn what_is_no_row_of_numbers_is_refused_with_its_line() {
         let message = |text: &str, along| rows(text, (along, PLANE)).unwrap_err().to_string();
-        assert_eq!(message("0,1\n2,x", None), "line 2: `x` is no number");
-        assert_eq!(message("0,1\n2", None), "line 2 has 1 cells, not 2");
-        assert_eq!(message("t, ax\n", None), "no row of numbers");
-        assert_eq!(message("0,nan", None), "line 1: `nan` is no number");
-        assert_eq!(message("0,1,2", Some("x")), "along needs two columns, a time and a number; line 1 has 3");
-        let hidden = "`# t [s], a [g]` looks like a heading with units behind a `#`; take the # away";
+        assert_eq!(
+            message("0,1\n2,x", None),
+            "E0028: `x` in line 2 of the data file is not a number. Correct the line."
+        );
+        assert_eq!(
+            message("0,1\n2", None),
+            "E0028: line 2 has 1 columns where 2 are expected. Give all rows the same number of columns."
+        );
+        assert_eq!(message("t, ax\n", None), "E0028: the data file has no row of numbers. Check its name.");
+        assert_eq!(
+            message("0,nan", None),
+            "E0028: `nan` in line 1 of the data file is not a number. Correct the line."
+        );
+        assert!(message("0,1,2", Some("x")).contains("two columns, a time and a value, but line 1 has 3"));
+        let hidden =
+            "E0029: the units in `# t [s], a [g]` are not read, because `#` makes the line a comment. Delete the `#`.";
         assert_eq!(message("# t [s], a [g]\n0,1", Some("x")), hidden);
-        assert_eq!(message("0,1", Some("z")), "along = \"z\"; allowed: \"x\", \"y\"");
+        assert_eq!(
+            message("0,1", Some("z")),
+            "E0028: along = \"z\" is not an axis of this case. Use one of \"x\", \"y\"."
+        );
     }
 }

@@ -27,11 +27,16 @@ fn length(number: u32) -> u64 {
 pub(super) fn broken(bytes: &[u8]) -> Error {
     let message = match announced(bytes) {
         Some(number) => format!(
-            "binary STL of {} bytes, whose heading announces {number} triangles and so {} bytes: it is cut off or damaged",
+            "E0031: the binary STL file has {} bytes, but its {number} triangles need {}. The file is cut off. Export \
+             it again.",
             bytes.len(),
             length(number)
         ),
-        None => format!("binary STL of {} bytes: cut off in its heading of {STL_HEADING}", bytes.len()),
+        None => format!(
+            "E0031: the binary STL file has {} bytes, but its header needs {STL_HEADING}. The file is cut off. \
+             Export it again.",
+            bytes.len()
+        ),
     };
     Error::new(ErrorKind::InvalidData, message)
 }
@@ -44,7 +49,10 @@ pub(super) fn triangles(bytes: &[u8]) -> io::Result<String> {
             triangle[12..48].chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]));
         let corners: Vec<String> = singles.filter(|at| at.is_finite()).map(|at| format!("{at:?}")).collect();
         if corners.len() != 9 {
-            let message = format!("triangle {} has a corner that is no number", number + 1);
+            let message = format!(
+                "E0031: a corner of triangle {} of the STL file is not a finite number. Export it again.",
+                number + 1
+            );
             return Err(Error::new(ErrorKind::InvalidData, message));
         }
         whole.push_str(&format!("[{}],", corners.join(",")));
@@ -65,7 +73,10 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
                 let numbers: Vec<f64> =
                     words.filter_map(|word| word.parse().ok()).filter(|at: &f64| at.is_finite()).collect();
                 if numbers.len() != 3 {
-                    return Err(bad(format!("line {}: a vertex has three numbers", number + 1)));
+                    return Err(bad(format!(
+                        "E0031: the vertex in line {} of the STL file does not have three numbers. Export it again.",
+                        number + 1
+                    )));
                 }
                 corners.extend(numbers.iter().map(|at| format!("{at:?}")));
             }
@@ -73,12 +84,17 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
                 whole.push_str(&format!("[{}],", corners.join(",")));
                 corners.clear();
             }
-            Some("endfacet") => return Err(bad(format!("line {}: a facet has three vertices", number + 1))),
+            Some("endfacet") => {
+                return Err(bad(format!(
+                    "E0031: the facet that ends in line {} of the STL file does not have three vertices. Export it again.",
+                    number + 1
+                )));
+            }
             _ => {}
         }
     }
     if !corners.is_empty() || whole.len() == 1 {
-        return Err(bad("the text of the STL ends before its triangles do".to_owned()));
+        return Err(bad("E0031: the STL file ends within a triangle, or has none. Export it again.".to_owned()));
     }
     whole.push(']');
     Ok(whole)
@@ -102,14 +118,15 @@ mod tests {
         assert!(is_binary(&bytes) && !is_binary(&bytes[..133]) && !is_binary(text.as_bytes()));
         assert_eq!(triangles(&bytes).unwrap(), row);
         bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
-        assert_eq!(triangles(&bytes).unwrap_err().to_string(), "triangle 1 has a corner that is no number");
-        let cut =
-            "binary STL of 133 bytes, whose heading announces 1 triangles and so 134 bytes: it is cut off or damaged";
-        assert_eq!(broken(&bytes[..133]).to_string(), cut);
-        assert_eq!(broken(&bytes[..80]).to_string(), "binary STL of 80 bytes: cut off in its heading of 84");
-        let message = |text: &str| facets(text).unwrap_err().to_string();
-        assert_eq!(message(&text.replace("vertex 0 0 0", "vertex 0 x 0")), "line 4: a vertex has three numbers");
-        assert_eq!(message(&text.replace("vertex 0 0 0", "")), "line 8: a facet has three vertices");
-        assert_eq!(message(text.split("endloop").next().unwrap()), "the text of the STL ends before its triangles do");
+        assert!(triangles(&bytes).unwrap_err().to_string().contains("a corner of triangle 1 "));
+        assert!(broken(&bytes[..133]).to_string().contains("has 133 bytes, but its 1 triangles need 134"));
+        assert!(broken(&bytes[..80]).to_string().contains("has 80 bytes, but its header needs 84"));
+        let refuses = |text: &str, says: &str| {
+            let message = facets(text).unwrap_err().to_string();
+            assert!(message.starts_with("E0031: ") && message.contains(says), "{message}");
+        };
+        refuses(&text.replace("vertex 0 0 0", "vertex 0 x 0"), "the vertex in line 4 ");
+        refuses(&text.replace("vertex 0 0 0", ""), "the facet that ends in line 8 ");
+        refuses(text.split("endloop").next().unwrap(), "ends within a triangle");
     }
 }

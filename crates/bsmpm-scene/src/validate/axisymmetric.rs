@@ -8,7 +8,10 @@ use crate::words::{Measurement, Side, Word};
 
 /// The face at the axis.
 const AXIS: Face = Face { axis: 0, upper: false };
-const SIDEWAYS: &str = "x is the radius: nothing has one direction along it all around the axis; allowed: 0 along x";
+const SIDEWAYS: &str = "E0242: x is the radius of an axisymmetric case, so nothing can move or act along one direction \
+                        x. Set the x component to 0.";
+const ROTATION: &str =
+    "E0242: a body of revolution cannot rotate in the plane of an axisymmetric case. Delete this key.";
 
 /// Errors of a case that is valid in its parts.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
@@ -18,7 +21,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     axis(case, record, report);
     sideways(case, record, report);
     rigid(case, record, report);
-    told(case, record, report);
+    quantities(case, record, report);
     cubic(case, report);
 }
 
@@ -27,9 +30,8 @@ fn cubic(case: &Case, report: &mut Report<'_>) {
     let meets_axis = |body: &Body| body.occupied(&case.grid)[0].start == 0;
     if case.grid.order == 3 && case.bodies.iter().any(meets_axis) {
         report.warn(
-            "grid.degree: \"cubic\" in a body that meets the axis: a uniform stress is off there by 2.1, 1.9 and 1.4 % with 2, 3 \
-             and 4 points along an axis of a cell and four cells in a radius, by 1.3, .9 and .6 % however small the cells \
-             are; \"quadratic\" is off by .15, .07 and .03 %",
+            "W0234: grid.degree: cubic splines at the axis of symmetry are up to 2 % off for a uniform stress. Use \
+             \"quadratic\", which is within 0.2 %.",
         );
     }
 }
@@ -40,8 +42,8 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
         && case.grid.lower()[0] != 0.0
     {
         let key = if grid.gives("knots") { "knots" } else { "lower" };
-        let message = "x is the radius, and the grid of an axisymmetric case begins at the axis, x = 0; cells without \
-                       material cost nothing";
+        let message = "E0238: the grid of an axisymmetric case must begin at the axis, x = 0, as x is the radius. Set \
+                       its lower end to 0; empty cells cost nothing.";
         grid.error(key, message, report);
     }
     let tables = std::iter::once(record).chain(record.records("stage")).filter_map(|table| table.record("boundary"));
@@ -50,11 +52,11 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
             let (found, word) = (super::support(boundary, side), side.word());
             if Face::of(side, Geometry::Axisymmetric) == Some(AXIS) {
                 if found.is_some_and(|found| found != Support::Roller) {
-                    boundary.error(word, "is the axis of an axisymmetric case; allowed: \"roller\"", report);
+                    boundary.error(word, "E0239: this face is the axis of symmetry. Set it to \"roller\".", report);
                 }
             } else if found == Some(Support::FreeField) {
-                let message = "a free field shakes sideways, which has no rotational symmetry: \"absorbing\", or a roller \
-                               far enough away";
+                let message = "E0240: a free field shakes sideways, which is not axisymmetric. Use \"absorbing\", or a \
+                               distant \"roller\".";
                 boundary.error(word, message, report);
             }
         }
@@ -63,7 +65,11 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
     for (drain, record) in drains {
         match &drain.site {
             DrainSite::Face(AXIS) => {
-                record.error("face", "is the axis of an axisymmetric case: it has no area to drain", report);
+                record.error(
+                    "face",
+                    "E0241: the axis of symmetry has no area, so nothing can drain there. Use another face.",
+                    report,
+                );
             }
             DrainSite::Lines(lines) if record.gives("from") => {
                 lines.iter().for_each(|ends| on_axis(*ends, record, report));
@@ -92,7 +98,7 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
             record.error("velocity", SIDEWAYS, report);
         }
         if body.spin.is_some() {
-            record.error("spin", "nothing turns in the plane of an axisymmetric case", report);
+            record.error("spin", ROTATION, report);
         }
     }
     if let Some(footing) = &case.footing
@@ -113,7 +119,11 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
     for (load, record) in case.point_loads.iter().zip(record.records("point_load")) {
         if load.at[0] == 0.0 && load.force[0] != 0.0 {
             let key = if record.gives("force_path") { "force_path" } else { "force" };
-            record.error(key, "on the axis a force has no component along the radius x", report);
+            record.error(
+                key,
+                "E0242: a force on the axis of symmetry has no radial direction. Set its x component to 0.",
+                report,
+            );
         }
     }
 }
@@ -126,21 +136,29 @@ fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
             record.error(moves.unwrap_or("path"), SIDEWAYS, report);
         }
         if !rigid.rotation.is_empty() {
-            record.error("rotation", "nothing turns in the plane of an axisymmetric case", report);
+            record.error("rotation", ROTATION, report);
         }
         if rigid.free[0] || rigid.free[2] {
-            record.error("free", "a body of revolution moves along its axis; allowed: y", report);
+            record.error(
+                "free",
+                "E0242: a body of revolution can move along its axis only. Use free = [\"y\"].",
+                report,
+            );
         }
     }
 }
 
 /// Quantities that have no meaning.
-fn told(case: &Case, record: &Record, report: &mut Report<'_>) {
+fn quantities(case: &Case, record: &Record, report: &mut Report<'_>) {
     use Measurement::{AngularMomentum, Moment, RigidMoment, RigidRotation};
     for (history, record) in case.histories.iter().zip(record.records("history")) {
         let measured = history.quantity.measurement();
         if matches!(measured, AngularMomentum | Moment | RigidMoment | RigidRotation) {
-            record.error("quantity", format!("there is no {measured} in an axisymmetric case"), report);
+            record.error(
+                "quantity",
+                format!("E0243: an axisymmetric case has no \"{measured}\". Choose another quantity."),
+                report,
+            );
         }
         if let Quantity::SectionForces { lines, .. } = &history.quantity {
             lines.iter().for_each(|[from, to]| on_axis([[from[0], from[1]], [to[0], to[1]]], record, report));
@@ -151,6 +169,10 @@ fn told(case: &Case, record: &Record, report: &mut Report<'_>) {
 /// What lies on the axis has no area.
 fn on_axis(ends: [[f64; 2]; 2], record: &Record, report: &mut Report<'_>) {
     if ends.iter().all(|end| end[0] == 0.0) {
-        record.error("from", "lies on the axis, where a surface has no area; allowed: one end off it", report);
+        record.error(
+            "from",
+            "E0241: the segment lies on the axis of symmetry, where a surface has no area. Move one end off it.",
+            report,
+        );
     }
 }

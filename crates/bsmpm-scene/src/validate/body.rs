@@ -4,15 +4,15 @@ use super::shape;
 use crate::case::{Body, Case};
 use crate::estimate::MOST_POINTS;
 use crate::grid::GridSpec;
-use crate::nearest::hint;
+use crate::nearest::nearest;
 use crate::record::Record;
 use crate::region::{self, AxisExtent, Region, Volume, Window};
 use crate::report::{Report, listed, shortened};
 use crate::words::Geometry;
 use bsmpm::model::Regime;
 
-/// Part of a body in cells of one point each above which it is warned of: a face just beyond a grid line has a fifth, a
-/// tube with a wall of four fifths of the points' distance too, of a fifth all.
+/// Part of a body in cells of one point each above which there is a warning: a face just beyond a grid line has a
+/// fifth, a tube with a wall of four fifths of the points' distance too, of a fifth all.
 const ALONE: f64 = 0.3;
 /// Parts of the distance of points by which a box may be thinner: rounding.
 const ROUNDING: f64 = 1e-9;
@@ -30,17 +30,27 @@ pub(super) fn read_all(
 ) -> Option<Vec<Body>> {
     let records = root.records("body");
     if root.gives("body") && records.is_empty() {
-        root.consequence("body", "at least one [[body]] is needed", &["body"], report);
+        root.consequence(
+            "body",
+            "E0213: the case has no body. Add a [[body]] with a material and a shape.",
+            &["body"],
+            report,
+        );
     }
     if records.len() > MOST {
-        root.error("body", format!("{} bodies; at most {MOST} are possible", records.len()), report);
+        let message = format!("E0214: the case has {} bodies (at most {MOST}). Merge some of them.", records.len());
+        root.error("body", message, report);
         return None;
     }
     let read: Vec<_> = records.iter().map(|record| read(record, root, grid, regime, report)).collect();
     let bodies: Vec<Body> = read.into_iter().collect::<Option<_>>()?;
     let points: u128 = grid.map_or(0, |grid| bodies.iter().map(|body| body.points(grid)).sum());
     if points > MOST_POINTS {
-        root.error("body", format!("{points} material points in all; at most {MOST_POINTS} are possible"), report);
+        let message = format!(
+            "E0215: the bodies have {points} material points (at most {MOST_POINTS}). Use larger cells, or reduce \
+             points_per_cell."
+        );
+        root.error("body", message, report);
         return None;
     }
     if let Some(grid) = grid {
@@ -55,7 +65,15 @@ fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option
     let axis = if spin.gives("axis") { spin.vector("axis")? } else { [0.0, 0.0, 1.0] };
     let length = axis.iter().map(|along| along * along).sum::<f64>().sqrt();
     if spin.gives("axis") && (geometry != Geometry::Solid || length == 0.0) {
-        let message = if length == 0.0 { "has no direction" } else { "is of a solid: a plane turns about its normal" };
+        let message = match geometry {
+            Geometry::Solid => {
+                "E0217: the axis of rotation has no direction, as all its components are zero. Correct it."
+            }
+            _ => {
+                "E0207: a body in a 2-D case rotates about the normal of the plane. Delete `axis`, or use geometry = \
+                 \"3d\"."
+            }
+        };
         spin.error("axis", message, report);
         return None;
     }
@@ -72,14 +90,14 @@ fn read(
     let material = material(record, root, report);
     for key in ["velocity", "spin"].into_iter().filter(|key| record.gives(key)) {
         if regime == Some(Regime::QuasiStatic) {
-            record.error(key, "has no meaning in a quasi-static analysis", report);
+            record.error(key, super::NO_INERTIA, report);
         }
     }
     let points_per_cell = record.count("points_per_cell").map(|count| count as usize);
     if points_per_cell == Some(2) && grid.is_some_and(|grid| grid.order == 3) {
         report.warn(format!(
-            "{}: 2 points per cell integrate cubic splines too coarsely: the stress at the base of a bar that its weight \
-             presses to half is 4 % off, and some bodies find no equilibrium; take 3 or more, or order = \"quadratic\"",
+            "W0209: {}: 2 material points per cell are too few for cubic splines. Stresses are off by several per \
+             cent. Use points_per_cell = 3, or grid.degree = \"quadratic\".",
             record.path
         ));
     }
@@ -93,7 +111,8 @@ fn read(
     let name = record.text("name").map(str::to_owned);
     let body = Body { name, material: material?, region: region?, points_per_cell: points_per_cell?, velocity, spin };
     if grid.is_some_and(|grid| body.points(grid) == 0) {
-        let message = "the body is thinner than 1e-9 of a cell: it has no points";
+        let message = "E0219: the body is thinner than 1e-9 of a cell, so it has no material points. Make it thicker, \
+                       or use smaller cells.";
         match record.record("box") {
             Some(record) => record.error("upper", message, report),
             None => record.error(shape::key(record), message, report),
@@ -111,7 +130,8 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
     let single = paths(&|body| body.points_per_cell == 1 && is_coarse(body, grid));
     if !single.is_empty() {
         report.warn(format!(
-            "{}: 1 point per cell integrates too coarsely. Increase points_per_cell to 2 or more.",
+            "W0210: {}: 1 material point per cell is too few for accurate stresses. Increase points_per_cell to 2 or \
+             more.",
             listed(&single)
         ));
     }
@@ -121,9 +141,8 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
         let paths = paths(&|body| alone(body).is_some());
         let up_to = if paths.len() > 1 { "up to " } else { "" };
         report.warn(format!(
-            "{}: {up_to}{:.0} % of it lies in cells where one point stands for all that is there, as its parts are \
-             thinner than its points lie apart: how it bends, and where its mass is within a cell, cannot be trusted; \
-             take smaller cells or more points_per_cell",
+            "W0211: {}: {up_to}{:.0} % of the body is thinner than the spacing of its material points. Bending there \
+             is unreliable. Use smaller cells, or increase points_per_cell.",
             listed(&paths),
             1e2 * most
         ));
@@ -131,8 +150,8 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
     let thin = |body: &Body| thinnest(body, grid).filter(|_| several(body));
     if let Some((axis, part)) = bodies.iter().filter_map(thin).min_by(|a, b| a.1.total_cmp(&b.1)) {
         report.warn(format!(
-            "{}: along {} it is {part:.2} of a cell thick, thinner than points lie apart elsewhere: how it bends, and strains \
-             beside it that are not its own, cannot be trusted; take smaller cells there",
+            "W0212: {}: the body is {part:.2} cells thick along {}, less than the spacing of material points. Its \
+             bending and the strains next to it are unreliable. Use smaller cells there.",
             listed(&paths(&|body| thin(body).is_some())),
             ["x", "y", "z"][axis]
         ));
@@ -176,8 +195,11 @@ fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<u
     let named = root.named("material");
     let found = named.iter().position(|(known, _)| known == name);
     if found.is_none() {
-        let hint = hint(name, named.iter().map(|(known, _)| known.as_str()));
-        let message = format!("there is no [material.{}]{hint}", shortened(name));
+        let name_as_given = shortened(name);
+        let message = match nearest(name, named.iter().map(|(known, _)| known.as_str())) {
+            Some(known) => format!("E0220: [material.{name_as_given}] is not defined. Did you mean `{known}`?"),
+            None => format!("E0220: [material.{name_as_given}] is not defined. Define it, or correct the name."),
+        };
         record.consequence("material", message, &["material"], report);
     }
     found
@@ -193,8 +215,8 @@ pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
     let both = |(i, j): &(usize, usize)| overlap(&bodies[*i], &bodies[*j], grid, &mut work) && together(*i, *j);
     if let Some((i, j)) = pairs.find(both) {
         report.warn(format!(
-            "W0201: body.{i} and body.{j} overlap. The common part has the material points, and the weight, of both. Cut one of \
-             them out of the other with `subtract`."
+            "W0213: body.{i} and body.{j} overlap. The soil in the overlap is counted twice. Move one of them, or \
+             `subtract` the overlap from it."
         ));
     }
 }

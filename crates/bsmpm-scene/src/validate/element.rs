@@ -2,9 +2,9 @@
 
 use crate::case::{ElementStage, ElementTest, NamedMaterial};
 use crate::grid::GridSpec;
-use crate::nearest::hint;
+use crate::nearest::unknown_name;
 use crate::record::Record;
-use crate::report::{Report, shortened};
+use crate::report::Report;
 use crate::words::Path;
 use bsmpm::element::Target;
 
@@ -43,8 +43,9 @@ fn read(
     let material = material(record, materials, report);
     let stages = record.records("stage");
     if record.gives("stage") && stages.is_empty() {
-        let causes: &[&str] = &[&record.path_of("stage")];
-        record.consequence("stage", "at least one stage is needed", causes, report);
+        let message =
+            "E0690: the test has no stage. Add for example stage = [{ test = \"triaxial\", compression = 0.05 }].";
+        record.consequence("stage", message, &[&record.path_of("stage")], report);
     }
     let mut undrained = false;
     let mut read = Vec::with_capacity(stages.len());
@@ -52,8 +53,8 @@ fn read(
         read.push(self::stage(stage, report));
         let now = stage.flag("undrained").unwrap_or(false);
         if undrained && !now {
-            let message = "a drained stage after an undrained one: how the pore pressure goes is not known; \
-                           make it a test of its own";
+            let message = "E0691: a drained stage cannot follow an undrained one, because the dissipation of the pore \
+                           pressure is not modelled. Use two tests.";
             report.error(stage.origin, &stage.path, message);
         }
         undrained = now;
@@ -61,12 +62,19 @@ fn read(
     let material = material?;
     let graded = materials[material].material.is_graded();
     if graded && !record.gives("height") {
-        let message = format!("missing; parameters of material.{} depend on the height", materials[material].name);
+        let message = format!(
+            "E0692: the parameters of material.{} vary with height, and the test needs one height. Add `height`.",
+            materials[material].name
+        );
         report.error(record.origin, &record.path_of("height"), message);
         return None;
     }
     if !graded && record.gives("height") {
-        record.error("height", format!("material.{} is the same everywhere", materials[material].name), report);
+        let message = format!(
+            "E0692: the parameters of material.{} do not vary with height. Remove `height`.",
+            materials[material].name
+        );
+        record.error("height", message, report);
     }
     let height = if graded { Some(record.number("height")? - grid.lower()[grid.dims() - 1]) } else { None };
     let (pressure, k0) = (record.number("pressure")?, record.number("k0")?);
@@ -78,7 +86,10 @@ fn read(
 fn material(record: &Record, materials: &[NamedMaterial], report: &mut Report<'_>) -> Option<usize> {
     if !record.gives("material") {
         if materials.len() > 1 {
-            let message = format!("missing; there are {} materials", materials.len());
+            let message = format!(
+                "E0693: the case has {} materials, and the test does not say which one it uses. Add `material`.",
+                materials.len()
+            );
             report.error(record.origin, &record.path_of("material"), message);
             return None;
         }
@@ -87,8 +98,8 @@ fn material(record: &Record, materials: &[NamedMaterial], report: &mut Report<'_
     let wanted = record.text("material")?;
     let found = materials.iter().position(|named| named.name == wanted);
     if found.is_none() {
-        let hint = hint(wanted, materials.iter().map(|named| named.name.as_str()));
-        record.error("material", format!("there is no material `{}`{hint}", shortened(wanted)), report);
+        let names = materials.iter().map(|named| named.name.as_str());
+        record.error("material", unknown_name("material", wanted, names), report);
     }
     found
 }
@@ -101,10 +112,13 @@ fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
         Path::Mixed => &DRIVES[2..],
     };
     for key in DRIVES.iter().filter(|key| !known.contains(key) && record.gives(key)) {
-        record.error(key, format!("has no meaning in test \"{path}\""), report);
+        let message = format!("E0694: the test \"{path}\" has no such key. Remove `{key}`.");
+        record.error(key, message, report);
     }
     let missing = |keys: &[&str], report: &mut Report<'_>| {
-        report.error(record.origin, &record.path, format!("missing: {} (test \"{path}\")", keys.join(" or ")));
+        let message =
+            format!("E0694: the test \"{path}\" does not say what is applied. Add `{}`.", keys.join("` or `"));
+        report.error(record.origin, &record.path, message);
     };
     let given = |keys: &[&'static str]| keys.iter().copied().find(|key| record.gives(key));
     let driven = match path {
@@ -145,7 +159,11 @@ fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
     let undrained = record.flag("undrained")?;
     let is_held = |target: &Option<Target>| matches!(target, Some(Target::Strain(_)));
     if undrained && (path == Path::Isotropic || targets[..3].iter().all(is_held) || path == Path::Oedometer) {
-        record.error("undrained", format!("nothing can move without drainage in test \"{path}\" so"), report);
+        let message = format!(
+            "E0695: the test \"{path}\" prescribes the volume change, so it cannot be undrained. Remove `undrained`, \
+             or use another test."
+        );
+        record.error("undrained", message, report);
         return None;
     }
     let duration = if record.gives("duration") { record.number("duration")? } else { f64::INFINITY };

@@ -17,29 +17,38 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         let mut refuse = |message: String| boundary.error(Side::ALL[axis][upper].word(), message, report);
         if axis == 1 {
-            refuse("the free field is that beside the ground: for \"left\" and \"right\" only".into());
+            refuse("E0244: a free field is available at the left and right face only. Use \"absorbing\" here.".into());
             continue;
         }
         if case.shaking.iter().all(|(_, ground)| *ground == [0.0; 3]) {
-            refuse("nothing moves the free field: give [shaking], or use \"absorbing\"".into());
+            refuse(
+                "E0245: there is no [shaking], so nothing moves the free field. Add it, or use \"absorbing\".".into(),
+            );
         }
         if !matches!(case.boundary[1][0], Support::Fixed | Support::Absorbing) || case.boundary[1][1] != Support::Free {
             refuse(
-                "the free field stands on the \"bottom\", which must be \"fixed\" or \"absorbing\", under a free \"top\"".into(),
+                "E0246: a free field needs a base and a free surface. Set boundary.bottom = \"fixed\" or \
+                 \"absorbing\", and boundary.top = \"free\"."
+                    .into(),
             );
         }
         if !reached(case, axis, upper == 1) {
-            refuse("no body reaches it: there is no ground to be the free field".into());
+            refuse(
+                "E0247: no body reaches this face, so there is no ground for a free field. Extend a body to it.".into(),
+            );
         }
         let (lower, higher) = column(case, upper == 1);
         let in_column = |body: &Body| body.bounds()[0][0] < higher && body.bounds()[1][0] > lower;
         let moves = |body: &Body| body.velocity.is_some_and(|v| v != [0.0; 3]) || body.spin.is_some();
         if case.bodies.iter().any(|body| in_column(body) && moves(body)) {
-            refuse("ground with a velocity at the start is no free field: it goes with [shaking]".into());
+            refuse(
+                "E0248: a body at this free field has an initial velocity or spin. Delete the velocity or spin.".into(),
+            );
         }
         if let Some(what) = acts_between(case, (lower, higher)) {
             refuse(format!(
-                "{what} acts on the cells at it, which are the free field: keep it more than a cell away, all the time"
+                "E0248: {what} acts on the outermost cells, which represent the free field. Keep it more than a cell \
+                 away from this face at all times."
             ));
         }
     }

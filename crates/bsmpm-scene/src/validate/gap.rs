@@ -4,7 +4,7 @@ use crate::case::{Body, Case};
 use crate::connected::{near_pairs, pieces_of_pairs};
 use crate::grid::GridSpec;
 use crate::region::{Edge, Region};
-use crate::report::Report;
+use crate::report::{Report, brief};
 
 /// Parts of the shortest cell by which bodies that share a boundary may miss each other: rounding.
 const ROUNDING: f64 = 1e-6;
@@ -43,11 +43,11 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
     let more = if narrow.len() > 1 { format!(" (and {} more pairs)", narrow.len() - 1) } else { String::new() };
     let [one, other] = gap.bodies;
     report.warn(format!(
-        "body.{} and body.{}{more} are {:.3e} m apart, {:.2} cells: bodies share nodes within a cell, and act on each \
-         other before they touch. Use cells smaller than the gap, widen it to a cell, or let them share a boundary.",
+        "W0228: body.{} and body.{}{more} are {} m apart ({:.2} cells), so they act on each other before they \
+         touch. Use cells smaller than the gap, or close it.",
         one.min(other),
         one.max(other),
-        gap.distance,
+        brief(gap.distance),
         gap.distance / gap.cell
     ));
 }

@@ -27,7 +27,10 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &
     let spec = GridSpec { axes, order, lines };
     let (cells, unknowns) = (estimate::cells(&spec), dims as u128 * estimate::nodes(&spec));
     if cells > MOST_UNKNOWNS || unknowns > MOST_UNKNOWNS {
-        let message = format!("{cells} cells and {unknowns} unknowns; at most {MOST_UNKNOWNS} of each are possible");
+        let message = format!(
+            "E0204: the grid has {cells} cells and {unknowns} unknowns (at most {MOST_UNKNOWNS} of each). Use larger \
+             cells."
+        );
         report.error(grid.place("cell"), &grid.path_of("cell"), message);
         return None;
     }
@@ -44,7 +47,7 @@ fn corners(grid: &Record, dims: usize, report: &mut Report<'_>) -> Option<()> {
         return Some(());
     }
     let message = format!(
-        "E0201: {:?} m is not above lower = {:?} m along {}. Exchange grid.lower and grid.upper, or correct them.",
+        "E0203: the upper corner {:?} m is not above the lower corner {:?} m along {}. Exchange or correct the corners.",
         &upper[..dims],
         &lower[..dims],
         wrong.join(" and ")
@@ -60,7 +63,10 @@ fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()
         let cell = axis.shortest();
         if cell < least {
             let key = if grid.gives("knots") { "knots" } else { "cell" };
-            let message = format!("the shortest cell along {name} is {cell:e} m; a length is at least {least:e} in SI");
+            let message = format!(
+                "E0205: the shortest cell along {name} is {cell:e} m (at least {least:e} m). Correct the cell size or \
+                 the breakpoints."
+            );
             grid.error(key, message, report);
             return None;
         }
@@ -77,7 +83,10 @@ fn graded(
 ) -> Option<(Vec<GridAxis>, [Vec<Line>; 3])> {
     let knots = grid.record("knots")?;
     if knots.gives("z") != (dims == 3) {
-        let message = if dims == 3 { "missing; a solid has breakpoints along z" } else { "a plane has no z" };
+        let message = match dims {
+            3 => "E0206: a 3-D grid needs breakpoints along z. Add knots.z.",
+            _ => "E0207: a 2-D grid has no z axis. Delete knots.z, or use geometry = \"3d\".",
+        };
         knots.error("z", message, report);
         return None;
     }
@@ -86,15 +95,18 @@ fn graded(
         let copies: Vec<&[f64]> = knots.numbers(name)?.chunk_by(|a, b| a == b).collect();
         let breakpoints: Vec<f64> = copies.iter().map(|copies| copies[0]).collect();
         if breakpoints.len() < 2 || breakpoints.windows(2).any(|pair| pair[1] <= pair[0]) {
-            knots.error(name, "breakpoints must increase, and be at least two; a repeated one stands in a row", report);
+            let message = "E0208: breakpoints must not decrease, and at least two must differ. Sort them, and add \
+                           those that are missing.";
+            knots.error(name, message, report);
             return None;
         }
         let (last, most) = (copies.len() - 1, |i: usize| if i == 0 || i == copies.len() - 1 { 1 } else { order });
         if let Some(torn) = (0..=last).find(|&i| copies[i].len() > most(i)) {
             let message = format!(
-                "{} stands {} times; an inner breakpoint may stand up to as often as the order, here {order}, the ends once",
+                "E0209: the breakpoint {} is listed {} times (at most {}). Delete the repetitions.",
                 breakpoints[torn],
-                copies[torn].len()
+                copies[torn].len(),
+                most(torn)
             );
             knots.error(name, message, report);
             return None;
@@ -103,7 +115,11 @@ fn graded(
         let lines = repeated.map(|(breakpoint, copies)| Line { breakpoint, multiplicity: copies.len() }).collect();
         for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
             if let Some(corner) = grid.vector(key).filter(|corner| corner[number] != end) {
-                let message = format!("{} differs from the breakpoints of {name}, which end at {end}", corner[number]);
+                let message = format!(
+                    "E0210: {name} = {} m differs from the outermost breakpoint along {name}, {end} m. Delete `{key}`, \
+                     or make both equal.",
+                    corner[number]
+                );
                 grid.error(key, message, report);
             }
         }
@@ -120,7 +136,9 @@ fn graded(
 fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut Report<'_>) -> Option<Vec<GridAxis>> {
     for key in ["lower", "upper"] {
         if !grid.gives(key) {
-            report.error(grid.origin, &grid.path_of(key), "missing; it is needed with `cell`");
+            let message =
+                "E0211: a grid with `cell` needs both corners, and this one is missing. Add it, or give knots.";
+            report.error(grid.origin, &grid.path_of(key), message);
         }
     }
     let (lower, upper) = (grid.vector("lower")?, grid.vector("upper")?);
@@ -149,7 +167,9 @@ impl Faces<'_> {
         let exact = (upper - lower) / cell;
         let name = NAMES[self.number];
         if exact > MOST_UNKNOWNS as f64 {
-            let message = format!("{exact:.3e} cells along {name}; at most {MOST_UNKNOWNS} are possible");
+            let message = format!(
+                "E0204: the grid has {exact:.3e} cells along {name} (at most {MOST_UNKNOWNS}). Use larger cells."
+            );
             self.grid.error("cell", message, report);
             return None;
         }
@@ -160,7 +180,7 @@ impl Faces<'_> {
         let cells = exact.ceil();
         let length = cells * cell;
         let reason =
-            format!("(upper - lower)/cell = {exact} along {name} is no whole number; the free face moves outward");
+            format!("{exact} cells along {name} are not a whole number: the free face moves outward to a whole cell");
         match self.supports {
             [_, Support::Free] => {
                 report.note(
@@ -177,7 +197,8 @@ impl Faces<'_> {
             }
             _ => {
                 let message = format!(
-                    "(upper - lower)/cell = {exact} along {name} is no whole number, and neither face is free to move; e.g. cell = {}",
+                    "E0212: the grid has {exact} cells along {name}, not a whole number, and neither face there is \
+                     free to move. Use for example cell = {}.",
                     (upper - lower) / exact.round().max(1.0)
                 );
                 self.grid.error("cell", message, report);
@@ -194,7 +215,8 @@ fn warn_of_rounding(spec: &GridSpec, report: &mut Report<'_>) {
         let spacing = far * f64::EPSILON;
         if spacing > 1e-6 * axis.shortest() {
             report.warn(format!(
-                "grid: coordinates along {name} of up to {far:e} m resolve {spacing:.1e} m only, more than 1e-6 of a cell"
+                "W0208: grid: coordinates of {far:e} m along {name} are exact to {spacing:.1e} m only, more than 1e-6 \
+                 of a cell. Move the origin closer to the bodies."
             ));
         }
     }

@@ -1,14 +1,19 @@
 //! Histories and the checks of their columns.
 
-use super::{flow, place, site};
-use crate::case::{Body, Check, Column, Counted, Face, History, Made, NamedMaterial, Quantity, Support};
+mod location;
+
+pub(super) use location::ends;
+
+use super::flow;
+use crate::case::{Body, Check, Column, Counted, History, Made, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
-use crate::nearest::hint;
+use crate::nearest::{nearest, unknown_name};
 use crate::record::Record;
 use crate::report::{Report, shortened};
 use crate::unit::Dimension;
 use crate::words::{Geometry, Measurement, Side, Word};
 use bsmpm::model::Regime;
+use location::{at, at_surface, at_x, face, section, within};
 use std::collections::HashSet;
 
 /// Histories at most, each a column or several of every row.
@@ -28,7 +33,7 @@ pub(super) fn read_all(
 ) -> Vec<History> {
     let records = root.records("history");
     if records.len() > MOST {
-        root.error("history", format!("{} histories; at most {MOST} are possible", records.len()), report);
+        root.error("history", too_many(records.len(), MOST), report);
         return Vec::new();
     }
     let mut taken = HashSet::from(["step".to_owned(), "time".to_owned()]);
@@ -36,7 +41,8 @@ pub(super) fn read_all(
     for record in records {
         let Some(history) = read((root, record), (regime, grid, made), report) else { continue };
         if let Some(column) = history.columns().into_iter().find(|column| !taken.insert(column.name.clone())) {
-            let message = format!("there is a column `{}` already; give this one another `name`", column.name);
+            let message =
+                format!("E0610: another history has the column `{}`. Give this one a different `name`.", column.name);
             record.error("name", message, report);
         }
         histories.push(history);
@@ -54,34 +60,37 @@ fn read(
     let (own, needed) = own_keys(measured, root.word("geometry"));
     let belongs = |key: &&str| own.contains(key) || needed.contains(key) || (*key == "of" && of_strip);
     for key in KEYS.into_iter().filter(|key| !belongs(key) && record.gives(key)) {
-        record.error(key, format!("has no meaning for quantity \"{measured}\""), report);
+        let message = format!("E0642: the quantity \"{measured}\" has no such key. Remove `{key}`.");
+        record.error(key, message, report);
     }
     if of_strip && record.gives("face") {
-        record.error("of", "give `face` or `of`", report);
+        let message = "E0643: both `face` and `of` are given, and they name different surfaces. Remove one of them.";
+        record.error("of", message, report);
     }
     for key in needed.iter().filter(|key| !record.gives(key) && !of_strip) {
-        report.error(record.origin, &record.path_of(key), format!("missing; quantity \"{measured}\" needs it"));
+        let message = format!("E0644: the quantity \"{measured}\" needs this key. Add `{key}`.");
+        report.error(record.origin, &record.path_of(key), message);
     }
     if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
-        record.error("quantity", format!("there is no {measured} in a quasi-static analysis"), report);
+        record.error("quantity", needs_dynamics(measured.word()), report);
     }
     if measured.is_of_footing() && !root.gives("footing") {
-        let message = format!("\"{measured}\" is about the footing, and there is no [footing]");
+        let message =
+            format!("E0646: the quantity \"{measured}\" needs a [footing], and the case has none. Add [footing].");
         record.consequence("quantity", message, &["footing"], report);
     }
     if measured.is_of_flow() && !flow::flows(root) {
-        let message =
-            format!("\"{measured}\" is about water that flows, and no material is \"coupled\" or \"undrained\"");
-        record.error("quantity", message, report);
+        record.error("quantity", needs_flow(measured.word()), report);
     }
     if record.number("scale") == Some(0.0) {
-        record.error("scale", "0 is out of range: the column would be zero; allowed: any scale but 0", report);
+        record.error("scale", "E0647: a scale of 0 makes the whole column 0. Use another scale.", report);
     }
     if let Some(side) = record.word::<Side>("face").filter(|_| measured.is_of_contact())
         && !supports(root, side).contains(&Support::Contact)
     {
         let message = format!(
-            "\"{measured}\" is about a face in contact, and [boundary] {side} is not one: give {{ friction }} or \"contact\""
+            "E0646: the quantity \"{measured}\" needs a boundary in contact, and `{side}` is not. Set boundary.{side} \
+             = \"contact\"."
         );
         record.error("face", message, report);
     }
@@ -89,13 +98,16 @@ fn read(
         && is_never_held(root, side)
     {
         let message = format!(
-            "nothing is ever held at {side}: neither [boundary], a stage nor a [[prescribed]] face does; it reads 0"
+            "E0646: nothing supports the boundary `{side}`, so its reaction is always 0. Name another `face`, or set \
+             boundary.{side}."
         );
         record.consequence("face", message, &["boundary", "prescribed", "stage"], report);
     }
     let is_outlet = |side: Side| supports(root, side).contains(&Support::Outflow);
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
-        record.error("quantity", "nothing leaves: no face in [boundary] is \"outflow\"", report);
+        let message = "E0646: no material can leave the grid, because no boundary is an outflow. Set a side in \
+                       [boundary] to \"outflow\".";
+        record.error("quantity", message, report);
     }
     let quantity = match of_strip {
         true => Quantity::Strip { number: strip((root, record), measured, report)?, measured },
@@ -115,14 +127,18 @@ fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut
         root.records("prescribed").iter().map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
     let strips: Vec<_> = footing.chain(motions).collect();
     let Some(number) = strips.iter().position(|(_, name, _)| *name == wanted) else {
-        let near = hint(wanted, strips.iter().map(|(_, name, _)| *name));
-        let message = format!("no [[prescribed]] motion and no [footing] has the name `{}`{near}", shortened(wanted));
+        let names = strips.iter().map(|(_, name, _)| *name);
+        let message = unknown_name("[[prescribed]] or [footing]", wanted, names);
         record.consequence("of", message, &["footing", "prescribed"], report);
         return None;
     };
     let (strip, _, key) = strips[number];
     if measured.is_of_contact() && strip.record(key).is_none() {
-        let message = format!("\"{measured}\" is about what rubs or lets go, and {} holds", strip.path);
+        let message = format!(
+            "E0646: the quantity \"{measured}\" needs frictional contact, and {} is tied to the ground. Add `{key}` \
+             to it.",
+            strip.path
+        );
         record.consequence("of", message, &[&strip.path], report);
         return None;
     }
@@ -141,6 +157,34 @@ fn is_never_held(root: &Record, side: Side) -> bool {
     let lets_go = |support: &Support| matches!(support, Support::Free | Support::Outflow);
     let is_axis = root.word("geometry") == Some(Geometry::Axisymmetric) && side == Side::Left;
     !is_axis && supports(root, side).iter().all(lets_go) && !root.records("prescribed").iter().any(moves)
+}
+
+/// The error of a time after the end of the run.
+pub(super) fn after_the_end(time: f64) -> String {
+    format!(
+        "E0663: the time t = {time} is after the end of the run. Use a time up to `analysis.end`, or increase that."
+    )
+}
+
+/// The error of too many tables.
+pub(super) fn too_many(number: usize, most: usize) -> String {
+    format!("E0640: the case has {number} of these tables, and at most {most} are possible. Remove some.")
+}
+
+/// The error of a quantity that a quasi-static analysis does not have.
+pub(super) fn needs_dynamics(quantity: &str) -> String {
+    format!(
+        "E0645: a quasi-static analysis has no velocities, and so no \"{quantity}\". Use another quantity, or \
+         analysis.type = \"dynamic\"."
+    )
+}
+
+/// The error of a quantity of flowing water.
+pub(super) fn needs_flow(quantity: &str) -> String {
+    format!(
+        "E0646: the quantity \"{quantity}\" needs flow of water. Set drainage = \"coupled\" or \"undrained\" in a \
+         material."
+    )
 }
 
 /// Whether it is nothing where nothing has a velocity.
@@ -195,7 +239,7 @@ fn quantity(
     (root, grid, made): (&Record, Option<&GridSpec>, CaseBodies<'_>),
     report: &mut Report<'_>,
 ) -> Option<Quantity> {
-    // Once, so that an error in what counts is told once.
+    // Once, so that an error in what counts is reported once.
     let counts = if measured.is_of_part() { counted(record, (grid, made), report)? } else { Counted::default() };
     Some(match measured {
         Measurement::Runout => {
@@ -262,8 +306,7 @@ fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usiz
     let names = || root.records("rigid").iter().filter_map(|rigid| rigid.text("name"));
     let found = names().position(|known| known == name);
     if found.is_none() {
-        let message = format!("there is no rigid body `{name}`{}", hint(name, names()));
-        record.consequence("rigid", message, &["rigid"], report);
+        record.consequence("rigid", unknown_name("[[rigid]]", name, names()), &["rigid"], report);
     }
     found
 }
@@ -287,12 +330,13 @@ fn counted(
 fn material(record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> Option<u16> {
     let (name, (materials, bodies)) = (record.text("material")?, made?);
     let Some(number) = materials.iter().position(|material| material.name == name) else {
-        let near = hint(name, materials.iter().map(|material| &*material.name));
-        record.error("material", format!("there is no material `{name}`{near}"), report);
+        let names = materials.iter().map(|material| &*material.name);
+        record.error("material", unknown_name("material", name, names), report);
         return None;
     };
     if bodies.iter().all(|body| body.material != number) {
-        record.error("material", format!("no body is made of `{name}`"), report);
+        let message = format!("E0613: no body consists of the material `{name}`. Name another material.");
+        record.error("material", message, report);
         return None;
     }
     u16::try_from(number).ok()
@@ -303,9 +347,8 @@ fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usi
     let name = record.text("body")?;
     let found = bodies.iter().position(|body| body.name.as_deref() == Some(name));
     if found.is_none() {
-        let near = hint(name, bodies.iter().filter_map(|body| body.name.as_deref()));
-        let message = format!("there is no body with name = \"{name}\"{near}");
-        record.consequence("body", message, &["body"], report);
+        let names = bodies.iter().filter_map(|body| body.name.as_deref());
+        record.consequence("body", unknown_name("[[body]]", name, names), &["body"], report);
     }
     found
 }
@@ -320,100 +363,12 @@ fn weighing(of: Counted, record: &Record, made: CaseBodies<'_>, report: &mut Rep
     };
     let mut counted = bodies.iter().enumerate().filter(|(number, body)| counts(*number, body));
     if !counted.any(|(_, body)| materials[body.material].density.is_some()) {
-        record.error("quantity", "there is no centre of mass: nothing of it has any", report);
+        let message =
+            "E0646: the quantity needs mass, and this part of the ground has none. Add `unit_weight` to its material.";
+        record.error("quantity", message, report);
         return None;
     }
     Some(of)
-}
-
-/// Lines of a section, and whether it is a disc: in a plane itself, of a solid the middle lines of a plate.
-fn section(
-    (root, record): (&Record, &Record),
-    grid: Option<&GridSpec>,
-    report: &mut Report<'_>,
-) -> Option<(Vec<[[f64; 3]; 2]>, bool)> {
-    if root.word::<Geometry>("geometry")? != Geometry::Solid {
-        return Some((vec![ends(record, grid, report)?], false));
-    }
-    if !record.gives("rectangle") && !record.gives("disc") {
-        report.error(record.origin, &record.path, "missing: rectangle or disc, across which a solid is cut");
-        return None;
-    }
-    let plate = site::plate(record, grid?, report)?;
-    Some((plate.lines().into(), plate.round))
-}
-
-/// Ends of a line that has a length.
-pub(super) fn ends(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let [from, to] = [record.vector("from"), record.vector("to")];
-    let ends = [from?, to?];
-    if ends[0] == ends[1] {
-        record.error("to", format!("{:?} is where the line begins: it has no length", record.numbers("to")?), report);
-        return None;
-    }
-    for (key, end) in ["from", "to"].into_iter().zip(ends) {
-        if let Some(beyond) = grid.and_then(|grid| place::is_beyond(grid, end)) {
-            record.error(key, beyond, report);
-        }
-    }
-    Some(ends)
-}
-
-/// The face of a history.
-fn face(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Face> {
-    let (side, geometry) = (record.word::<Side>("face")?, root.word::<Geometry>("geometry")?);
-    let face = Face::of(side, geometry);
-    if face.is_none() {
-        record.error("face", format!("a grid in {geometry} has no face \"{side}\""), report);
-    }
-    face
-}
-
-fn at_surface(record: &Record) -> Option<bool> {
-    if record.gives("surface") { record.flag("surface") } else { Some(false) }
-}
-
-/// The x of a height, if it has one; the outer option is `None` after an error.
-fn at_x(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<Option<f64>> {
-    if !record.gives("at_x") {
-        return Some(None);
-    }
-    let x = record.number("at_x")?;
-    if let Some((lower, upper)) = grid.map(|grid| (grid.lower()[0], grid.upper()[0])).filter(|(a, b)| x < *a || x > *b)
-    {
-        record.error("at_x", format!("{x} is outside the grid, {lower} to {upper}"), report);
-    }
-    Some(Some(x))
-}
-
-/// A box that has something in common with the grid.
-fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let (lower, upper) = (record.vector("lower")?, record.vector("upper")?);
-    if let Some(grid) = grid {
-        let axes = grid.dims();
-        let (low, high) = (&lower[..axes], &upper[..axes]);
-        if (0..axes).any(|axis| lower[axis] >= upper[axis]) {
-            record.error("upper", format!("{high:?} is not above lower = {low:?}: the box is empty"), report);
-        }
-        let (start, end) = (grid.lower(), grid.upper());
-        if (0..axes).any(|axis| upper[axis] <= start[axis] || lower[axis] >= end[axis]) {
-            let message = format!("it is outside the grid, {:?} to {:?}", &start[..axes], &end[..axes]);
-            report.error(record.origin, &record.path, message);
-        }
-    }
-    Some([lower, upper])
-}
-
-fn at(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[f64; 3]> {
-    let at = record.vector("at")?;
-    if let Some(grid) = grid {
-        let (axes, lower, upper) = (grid.dims(), grid.lower(), grid.upper());
-        if (0..axes).any(|axis| at[axis] < lower[axis] || at[axis] > upper[axis]) {
-            let (at, lower, upper) = (&at[..axes], &lower[..axes], &upper[..axes]);
-            record.error("at", format!("{at:?} is outside the grid, {lower:?} to {upper:?}"), report);
-        }
-    }
-    Some(at)
 }
 
 /// All checks in the order of the file, without those that have an error.
@@ -427,21 +382,32 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
         || histories.iter().flat_map(|history| history.columns().into_iter().map(move |column| (history, column)));
     let Some((_, column)) = columns().find(|(_, column)| column.name == quantity) else {
         let names: Vec<String> = columns().map(|(_, column)| column.name).collect();
-        let hint = hint(quantity, names.iter().map(String::as_str));
-        let known = if names.is_empty() { "there is no [[history]]".to_owned() } else { names.join(", ") };
-        let message = format!("no history has a column `{}`{hint} (columns: {known})", shortened(quantity));
+        let known = match nearest(quantity, names.iter().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if names.is_empty() => "the case has none".to_owned(),
+            None => format!("columns: {}", names.join(", ")),
+        };
+        let message = format!(
+            "E0660: no [[history]] has a column `{}` ({known}). Correct the name, or add a [[history]].",
+            shortened(quantity)
+        );
         record.consequence("quantity", message, &["history"], report);
         return None;
     };
     let at = if record.gives("at") { record.number("at")? } else { end? };
     if end.is_some_and(|end| at > end) {
-        record.error("at", format!("{at} is beyond the end of the run"), report);
+        record.error("at", after_the_end(at), report);
     }
     let (min, max) = (bound("min", record, &column, report)?, bound("max", record, &column, report)?);
     match (min, max) {
-        (None, None) => report.error(record.origin, &record.path, "missing: min, max or both"),
+        (None, None) => {
+            let message = "E0661: the check has no bound, so it checks nothing. Add `min`, `max` or both.";
+            report.error(record.origin, &record.path, message);
+        }
         (Some(min), Some(max)) if min > max => {
-            record.error("min", format!("{min} is above max = {max}"), report);
+            let message =
+                format!("E0661: the lower bound {min} exceeds the upper bound {max}. Exchange `min` and `max`.");
+            record.error("min", message, report);
         }
         _ => {}
     }
@@ -460,6 +426,10 @@ fn bound(key: &str, record: &Record, column: &Column, report: &mut Report<'_>) -
         return Some(Some(value));
     }
     let allowed = expected.map_or("a number".to_owned(), |expected| expected.to_string());
-    record.error(key, format!("{dimension} was found; the column `{}` takes {allowed}", column.name), report);
+    let message = format!(
+        "E0665: the value is {dimension}, but the column `{}` needs {allowed}. Correct the unit of the bound.",
+        column.name
+    );
+    record.error(key, message, report);
     None
 }

@@ -21,16 +21,14 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         let held = holds_at_rest(case, axis, None);
         for what in loads(case, axis).filter(|_| !held).chain(rigid(case, root, axis)) {
             report.warn(format!(
-                "{what}: does not end as it began, and along {name} nothing but faces that absorb holds the ground, which \
-                 sinks under it as long as it lasts (strip of 4 m, 20 kPa, 10 MPa: 89 mm in .8 s, 193 in 1.6 s): fix a face \
-                 far enough away, or let it end with what [initial] has found"
+                "W0231: {what}: this load remains at the end, and only absorbing boundaries support the ground along \
+                 {name}. The ground drifts. Fix a distant face, or remove the load before the end."
             ));
         }
         for what in strips(case, axis) {
             report.warn(format!(
-                "{what}: stays away from where it began, and along {name} nothing else but faces that absorb holds the \
-                 ground, which goes with it as a whole until nothing presses: fix a face far enough away, or let it come \
-                 back"
+                "W0231: {what}: this displacement remains at the end, and only absorbing boundaries support the ground \
+                 along {name}. The ground drifts with it. Fix a distant face, or reverse the motion."
             ));
         }
     }

@@ -52,12 +52,9 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
             let Some(exit) = motion.exit(case, face) else { continue };
             let side = face.side(case.geometry);
             report.warn(format!(
-                "{}: it lies {:.3} m from the free face {side} of the grid. Moving freely it leaves the grid at about \
-                 t = {:.3} s (exit code 81). Enlarge the grid there by {:.3} m, or support that face.",
-                record.path,
-                distance.max(0.0),
-                exit.time,
-                exit.overshoot
+                "W0230: {}: the body moves out of the grid at the free face {side} at about t = {:.3} s, and the run \
+                 would end there. Enlarge the grid by {:.3} m, or support that face.",
+                record.path, exit.time, exit.overshoot
             ));
         }
     }

@@ -66,8 +66,8 @@ pub(super) fn shrink(
     let Some(analysis) = root.record("analysis").filter(|_| is_sought(root) && !report.failed()) else { return 1.0 };
     let farthest = moved.paths().map(|path| path.farthest()).fold(0.0, f64::max);
     if farthest == 0.0 {
-        let message = "nothing moves: give [footing], [[prescribed]] or [[rigid]] a displacement. For the factor of safety \
-                       of ground under dead load use `bsmpm fos`";
+        let message = "E0442: a limit load needs a prescribed displacement, and the case has none. Give [footing], [[prescribed]] \
+                       or [[rigid]] one, or use `bsmpm fos`.";
         analysis.error(KEY, message, report);
         return 1.0;
     }
@@ -78,8 +78,8 @@ pub(super) fn shrink(
         row.1 = row.1.map(|along| along / factor);
     }
     let reason = format!(
-        "displacements up to {FARTHEST:e} of the smallest cell: Young's moduli x {factor}, prescribed displacements / {factor}; \
-         multiply displacements by it"
+        "displacements stay below {FARTHEST:e} of the smallest cell: Young's moduli are multiplied and prescribed displacements \
+         divided by {factor}. Multiply computed displacements by it"
     );
     report.note("analysis.purpose", "limit-load", reason);
     factor
@@ -101,7 +101,9 @@ pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, re
     refuse(case, analysis, report);
     refuse_motions(case, analysis, &prepared.inside_cells, report);
     if case.solver.force_tolerance > FORCE_TOLERANCE {
-        let message = format!("limit loads are wrong with more than {FORCE_TOLERANCE:e}. Delete it");
+        let message = format!(
+            "E0451: the tolerance is above {FORCE_TOLERANCE:e}, so limit loads would be several per cent too high. Delete this key."
+        );
         root.record("solver").into_iter().for_each(|solver| solver.error("force_tolerance", &message, report));
     }
     warn_of_settings(case, report);
@@ -115,22 +117,28 @@ pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, re
 /// Refuses ground whose load depends on how far it is strained, and motions without a direction.
 fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
     if case.analysis.kind != AnalysisType::QuasiStatic {
-        let message = format!("a limit load needs type = \"quasi-static\", and this is {}", case.analysis.kind);
+        let message = format!(
+            "E0443: a limit load needs a quasi-static analysis, and this one is {}. Use analysis.type = \"quasi-static\".",
+            case.analysis.kind
+        );
         analysis.error(KEY, message, report);
     }
     if case.flow.is_some() {
-        let message = "not available where water flows: its pressure depends on the stiffness. Delete it";
+        let message = "E0444: a limit load is not available with groundwater flow, because pore pressures depend on the stiffness, \
+                       which is raised. Delete `purpose`, or drainage = \"coupled\".";
         analysis.error(KEY, message, report);
     }
     let is_divided = case.stages.iter().any(|stage| stage.strength_reduction.is_some());
     if case.strength_reduction.is_some() || is_divided {
-        analysis.error(KEY, "[strength_reduction] chooses a stiffness, too. Delete one of them", report);
+        let message = "E0445: a limit load and strength reduction cannot be combined, because both change the stiffness. Delete one \
+                       of them.";
+        analysis.error(KEY, message, report);
     }
     let follows_strain = |material: &Material| material.softens() || material.hardens() || !material.is_linear();
     if let Some(named) = case.materials.iter().find(|named| follows_strain(&named.material)) {
         let message = format!(
-            "the strength or stiffness of material.{} depends on its strain, so that its largest load depends on the \
-             displacement. Delete it",
+            "E0446: material `{}` hardens, softens or is non-linear, so it has no limit load independent of displacement. Use \
+             constant strength and stiffness, or delete `purpose`.",
             named.name
         );
         analysis.error(KEY, message, report);
@@ -141,15 +149,16 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
 fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], report: &mut Report<'_>) {
     if let Some(rigid) = case.rigid.iter().find(|rigid| !rigid.rotation.is_empty() || rigid.free.contains(&true)) {
         let message = format!(
-            "rigid `{}` rotates or is free; a limit load is sought along a prescribed path. Delete `rotation` and `free`",
+            "E0447: rigid body `{}` rotates or is free, but a limit load is found along a prescribed path. Delete its `rotation` and \
+             `free`.",
             rigid.name
         );
         analysis.error(KEY, message, report);
     }
     if let Some(name) = inside_cells.first() {
         let message = format!(
-            "{name} ends inside a cell, so that its load cannot be extrapolated. Put a grid line there, by grid.cell or \
-             [grid.knots]"
+            "E0448: `{name}` ends inside a cell, so its limit load cannot be extrapolated to finer grids. Put a grid line there with \
+             grid.cell or [grid.knots]."
         );
         analysis.error(KEY, message, report);
     }
@@ -158,14 +167,14 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
     let rigid = case.rigid.iter().map(|rigid| &rigid.path);
     let mut paths = strips.clone().map(|(_, path)| path).chain(rigid);
     if paths.any(|path| path.moves() && !goes_on(path, case.analysis.end)) {
-        let message = "a prescribed path stops or turns back before the end of the run, where the load is read. Let the \
-                       displacement grow until analysis.end";
+        let message = "E0449: a prescribed path stops or turns back before the end of the analysis, where the limit load is read. \
+                       Let the displacement grow until analysis.end.";
         analysis.error(KEY, message, report);
     }
     if let Some(side) = strips.filter(|(_, path)| path.moves()).find_map(|(site, path)| opposed(case, site, path)) {
         let message = format!(
-            "[boundary] {side} holds the ground against a prescribed motion that lies on it: its load would be zero. Make {side} \
-             \"free\""
+            "E0450: boundary `{side}` restrains the ground where a displacement is prescribed, so the limit load would be zero. Use \
+             boundary.{side} = \"free\"."
         );
         analysis.error(KEY, message, report);
     }
@@ -202,14 +211,14 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
     let most = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(POINTS);
     if dilates && most > POINTS {
         report.warn(format!(
-            "points_per_cell: {most} lock soil that dilates; limit loads are up to 20 % higher than with {POINTS}. Use \
-             points_per_cell = {POINTS}."
+            "W0423: body.points_per_cell: {most} points make dilating soil too stiff. Limit loads are up to 20 % higher than with \
+             {POINTS}. Use points_per_cell = {POINTS}."
         ));
     }
     if case.grid.order != 2 {
         report.warn(
-            "grid.degree: limit loads were verified with quadratic splines. With others neither the error nor the band of the \
-             extrapolated load is known. Use \"quadratic\".",
+            "W0424: grid.degree: limit loads are verified with quadratic splines only. With others the error of the extrapolated load \
+             is unknown. Use \"quadratic\".",
         );
     }
     let is_far_off = |named: &&NamedMaterial| {
@@ -218,8 +227,8 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
     };
     if let Some(named) = case.materials.iter().find(is_far_off) {
         report.warn(format!(
-            "material.{}: its dilation angle is less than half of its friction angle. Such soil has no unique limit load: it \
-             varies by some per cent with steps and cells. Compare with dilation = friction, which is an upper bound.",
+            "W0425: material.{}: the dilation angle is below half of the friction angle. The limit load is not unique, and varies by \
+             some per cent with steps and cells. Compare with dilation_angle = friction_angle.",
             named.name
         ));
     }
@@ -245,9 +254,8 @@ fn warn_of_averages(case: &Case, report: &mut Report<'_>) {
     };
     if let Some(named) = case.materials.iter().find(is_loose) {
         report.warn(format!(
-            "stabilisation.method: \"consistent-f-bar\" is wrong for material.{}, which dilates and has next to no cohesion: the \
-             bearing capacity of strips was 32 % too low to 42 % too high. Use \"none\" with points_per_cell = 2, or analysis.purpose = \
-             \"limit-load\".",
+            "W0426: stabilisation.method: \"consistent-f-bar\" is inaccurate for `{}`, which dilates with little cohesion. The load is \
+             up to 42 % off. Use \"none\" and points_per_cell = 2.",
             named.name
         ));
     }
@@ -272,8 +280,8 @@ fn small_cohesions(case: &Case, loads: &[SoughtLoad], report: &mut Report<'_>) -
             continue;
         };
         report.warn(format!(
-            "material.{}: c / (gamma B) = {share:.1e}, with the width B of the load. A cohesion as small as this still carries a part \
-             of it: 1.2e-2 raised the load of a smooth strip on sand by 14 %. Use cohesion = 0 if it was given for stability only.",
+            "W0427: material.{}: the cohesion is small, c / (gamma B) = {share:.1e} with the width B of the load. It still raises the \
+             limit load by some per cent. Use cohesion = 0 if you do not mean it.",
             named.name
         ));
         small.push(named.name.clone());

@@ -12,7 +12,7 @@ use crate::case::{Case, NamedMaterial};
 use crate::grid::Line;
 use crate::record::Record;
 use crate::region::Edge;
-use crate::report::Report;
+use crate::report::{Report, brief};
 use crate::words::C0Lines;
 use bsmpm::water::flow::Soil;
 use std::collections::BTreeMap;
@@ -26,13 +26,13 @@ const BESIDE: f64 = 1e-3;
 const BEYOND: f64 = 0.25;
 /// Relative difference of two moduli, Poisson's ratios or densities that is none: strains jump by no more.
 const EQUAL: f64 = 0.02;
-/// Ratio of two moduli, or of two densities, from which an interface inside cells is warned of.
+/// Ratio of two moduli, or of two densities, from which there is a warning of an interface inside cells.
 const UNLIKE: f64 = 1.5;
-/// Ratio of two densities from which averages on either side of a line are told to be off.
+/// Ratio of two densities from which there is a warning of averages on either side of a line.
 const DENSER: f64 = 2.0;
 /// Ratio of two moduli up to which a stiff body on yielding soil was shown to be right once it has left its grid line.
 const SHOWN: f64 = 100.0;
-/// Parts of the shortest cell that a strip may go before ground under water is told to lose volume at its lines.
+/// Parts of the shortest cell that a strip may go before there is a warning of lost volume under water at its lines.
 const CROSSED: f64 = 0.25;
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
@@ -61,23 +61,25 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     };
     let (placed, left): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(place, _)| is_placed(place));
     if let Some(((axis, line), reason)) = left.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
-        let at = coordinate(case, *axis, *line);
-        let name = NAMES[*axis];
-        let why = if chosen == C0Lines::None { "with \"none\"" } else { "where water flows, without a line there," };
-        report.warn(format!(
-            "grid.c0_lines: {why} the splines cannot follow the jump of strain at {name} = {at} ({reason}): stress is \
-             wrong, up to by tens of per cent, within about three cells, and a strip holds a cell more than its length"
-        ));
+        let place = place_of(case, (*axis, *line));
+        report.warn(match chosen {
+            C0Lines::None => format!(
+                "W0216: grid.c0_lines: there is no C0 line at {place} ({reason}). Stresses within three cells can be \
+                 off by tens of per cent. Use \"automatic\"."
+            ),
+            C0Lines::Automatic => format!(
+                "W0217: grid.c0_lines: there is no C0 line at {place} ({reason}), because pore water flows. Stresses \
+                 within three cells can be off by tens of per cent. Use smaller cells there."
+            ),
+        });
     }
     let mut crossed = own(case);
     let jumps = crossed.or(placed.first().map(|(place, _)| *place));
     if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, record)) {
         report.warn(format!(
-            "grid.c0_lines: strains may jump at {} = {}, and material.{name} has friction and does not drain: its effective \
-             stress changes beside the line: strips bore 4 % less to 1.5 % more than by the same strength of cohesion alone; give \
-             it friction = 0 and that strength, or hold it against such a run",
-            NAMES[axis],
-            coordinate(case, axis, line)
+            "W0218: grid.c0_lines: the undrained material.{name} has friction, and its strength is inaccurate at the \
+             C0 line {}. Loads can be off by 4 %. Compare a run with friction_angle = 0.",
+            place_of(case, (axis, line))
         ));
     }
     for ((axis, line), reason) in placed {
@@ -85,16 +87,13 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
             crossed = crossed.or(Some((axis, line)));
         }
         insert(case, axis, line);
-        let at = format!("{} = {}", NAMES[axis], coordinate(case, axis, line));
-        report.note("grid.c0_lines", at, reason);
+        report.note("grid.c0_lines", place_of(case, (axis, line)), reason);
     }
-    if let Some((axis, line)) = crossed.filter(|_| case.flow.is_some()) {
+    if let Some(line) = crossed.filter(|_| case.flow.is_some()) {
         report.warn(format!(
-            "grid.c0_lines: strains may jump at {} = {}, and water fills the ground: as that moves across the line its points \
-             integrate volumes less well, and where water cannot leave it loses volume (.07 of .4 m2 that a strip pushes aside \
-             in cells of .5 m); more points_per_cell, or no such line",
-            NAMES[axis],
-            coordinate(case, axis, line)
+            "W0219: grid.c0_lines: saturated soil that moves across the C0 line at {} loses volume. Loads become too \
+             small. Increase points_per_cell, or use \"none\".",
+            place_of(case, line)
         ));
     }
     found.doubts.into_values().for_each(|doubt| report.warn(doubt));
@@ -104,12 +103,12 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
 /// Soil whose strength friction makes, and in which no water flows although it fills it.
 fn undrained_with_friction<'a>(case: &Case, record: &'a Record) -> Option<&'a str> {
     let soils = &case.flow.as_ref()?.soils;
-    let rubs = |of: &Record| of.number("friction_angle").is_some_and(|friction| friction > 0.0);
+    let has_friction = |of: &Record| of.number("friction_angle").is_some_and(|friction| friction > 0.0);
     let is_made = |number: usize| case.bodies.iter().any(|body| body.material == number);
     let mut named = record.named("material").iter().zip(soils).enumerate();
     let undrained = |soil: &Option<Soil<3>>| soil.as_ref().is_some_and(|soil| soil.permeability.is_none());
     named
-        .find(|(number, ((_, of), soil))| is_made(*number) && undrained(soil) && rubs(of))
+        .find(|(number, ((_, of), soil))| is_made(*number) && undrained(soil) && has_friction(of))
         .map(|(_, ((name, _), _))| name.as_str())
 }
 
@@ -148,9 +147,10 @@ pub(super) fn has_interface(case: &Case) -> bool {
     FoundLine::at_interfaces(case).lines.keys().any(|(axis, line)| is_c0(*axis, *line))
 }
 
-fn coordinate(case: &Case, axis: usize, line: usize) -> f64 {
-    let axis = &case.grid.axes[axis];
-    axis.lower() + axis.breakpoint(line)
+/// Where the grid line of an axis with a number is, in words.
+fn place_of(case: &Case, (axis, line): (usize, usize)) -> String {
+    let along = &case.grid.axes[axis];
+    format!("{} = {} m", NAMES[axis], along.lower() + along.breakpoint(line))
 }
 
 fn has(case: &Case, axis: usize, line: usize) -> bool {
@@ -194,7 +194,7 @@ fn interfaces(case: &Case, found: &mut FoundLine) {
             let Some((at, pair, ratios)) = unlike(case, &edge) else { continue };
             let [a, b] = [pair.0, pair.1].map(|material| &case.materials[material]);
             if let Some(line) = line {
-                found.lines.entry(line).or_insert_with(|| told_to_meet(a, b));
+                found.lines.entry(line).or_insert_with(|| interface_of(a, b));
             }
             let averages = case.stabilisation.averages();
             if let Some(doubt) = doubt([a, b], (line.is_some(), averages), (&at, ratios)) {
@@ -204,8 +204,8 @@ fn interfaces(case: &Case, found: &mut FoundLine) {
     }
 }
 
-fn told_to_meet(a: &NamedMaterial, b: &NamedMaterial) -> String {
-    format!("{} and {} meet there, and strains jump", a.name, b.name)
+fn interface_of(a: &NamedMaterial, b: &NamedMaterial) -> String {
+    format!("strains jump at the interface of `{}` and `{}`", a.name, b.name)
 }
 
 /// What is doubtful about an interface of two materials whose moduli and densities have these ratios.
@@ -216,34 +216,32 @@ fn doubt(
 ) -> Option<String> {
     let (a, b, yields) = (&a.name, &b.name, [a, b].iter().any(|named| named.material.yields()));
     if on_line {
-        let told = || {
+        let stiffer = || {
             format!(
-                "material.{a} and material.{b} meet, one {moduli:.3e} times as stiff as the other: once soil has yielded and \
-                 they have left the grid line at {at:?}, stress in the stiffer one is of no use (up to 1 : {SHOWN} it was \
-                 shown within 15 %); take a modulus of at most {SHOWN} times that of the soil"
+                "W0220: the stiffness of material.{a} and material.{b} differs by a factor of {} (verified: \
+                 {SHOWN}). Stresses in the stiffer one are wrong after yielding. Reduce its `young`.",
+                brief(moduli)
             )
         };
         let denser = || {
             format!(
-                "material.{a} and material.{b} meet at {at:?}, one {densities:.3} times as dense as the other: averages end \
-                 at the grid line there as at a free surface, and in the cell beside it the stress along it is off by up to .16 \
-                 of the weight of that cell (1 : 2 by 12 %, 1 : 10 by 48 % in the denser one); smaller cells, or \
-                 [stabilisation] method = \"none\" where nothing locks"
+                "W0221: the density of material.{a} and material.{b} differs by a factor of {}. Stresses along \
+                 their interface at {at:?} are inaccurate in the adjacent cells. Use smaller cells.",
+                brief(densities)
             )
         };
         return match yields && moduli > SHOWN {
-            true => Some(told()),
+            true => Some(stiffer()),
             false => (averages && densities >= DENSER).then(denser),
         };
     }
-    let told = || {
+    let unfitted = || {
         format!(
-            "material.{a} and material.{b} meet inside cells, first at {at:?}: the splines cannot follow the jump of strain \
-             there, and stress is wrong by tens of per cent within about three cells; where the interface is straight along \
-             an axis, put a grid line on it"
+            "W0222: the interface of material.{a} and material.{b} lies inside cells, first at {at:?}. Stresses within \
+             three cells are off by tens of per cent. Put a grid line on it (grid.knots)."
         )
     };
-    (moduli.max(densities) >= UNLIKE).then(told)
+    (moduli.max(densities) >= UNLIKE).then(unfitted)
 }
 
 /// An interface: a place on it, the materials on both sides, the ratios of their moduli and densities.

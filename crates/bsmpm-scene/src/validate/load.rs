@@ -42,10 +42,7 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         let plate = plate(record, grid, report)?;
         let mut places = places(Site::Plate(plate), grid).into_iter();
         if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
-            let message = format!(
-                "E0401: no body is at {at:?} at the start. Move it onto a body: half the spacing of material points away at most."
-            );
-            record.consequence(key, message, &["body"], report);
+            record.consequence(key, no_body(&at), &["body"], report);
             return None;
         }
         return Some(LoadedLine::Plate(plate));
@@ -70,7 +67,8 @@ pub(super) fn circle(
     let inside = |at: &[f64; 2]| (0..2).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis]);
     let places: Vec<[f64; 2]> = ring(center, radius).filter(inside).collect();
     if places.is_empty() {
-        record.error("circle", "no part of it is inside the grid", report);
+        let message = "E0201: no part of the circle is inside the grid. Move it into the grid, or enlarge the grid.";
+        record.error("circle", message, report);
         return None;
     }
     Some((center, radius, places))
@@ -112,11 +110,7 @@ pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut R
         if let Some(message) = is_beyond(grid, at) {
             record.error("at", message, report);
         } else if !is_at(bodies, grid, at) {
-            let message = format!(
-                "E0401: no body is at {:?} at the start. Move it onto a body: half the spacing of material points away at most.",
-                &at[..grid.dims()]
-            );
-            record.consequence("at", message, &["body"], report);
+            record.consequence("at", no_body(&at[..grid.dims()]), &["body"], report);
         }
         let (force, (ramp, amplitude)) = force?;
         let key = if record.gives("force_path") { "force_path" } else { "force" };
@@ -143,8 +137,18 @@ pub(super) fn force(
 
 fn warn_of_nothing(record: &Record, key: &str, load: [f64; 3], report: &mut Report<'_>) {
     if load == [0.0; 3] {
-        report.warn(format!("{}: zero: it does nothing", record.path_of(key)));
+        report.warn(format!(
+            "W0401: {}: the load is zero and has no effect. Give a value, or delete it.",
+            record.path_of(key)
+        ));
     }
+}
+
+/// Says that no body lies at a place of a load, m.
+fn no_body(at: &[f64]) -> String {
+    format!(
+        "E0401: no body lies at {at:?} at the start. Move it onto a body, at most half the spacing of material points away."
+    )
 }
 
 /// A load has a body under every part of it.
@@ -157,10 +161,7 @@ fn acts_on_body(
 ) {
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
     if let Some(at) = places.find(|at| !at_body(bodies, grid, *at)) {
-        let message = format!(
-            "E0401: no body is at {at:?} at the start. Move it onto a body: half the spacing of material points away at most."
-        );
-        record.consequence(key, message, &["body"], report);
+        record.consequence(key, no_body(&at), &["body"], report);
     }
 }
 
@@ -168,9 +169,12 @@ fn acts_on_body(
 fn course(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(f64, Shares)> {
     if !record.gives("amplitude") {
         let ramp = record.number("ramp")?;
-        if around.end.is_some_and(|end| ramp > end) {
+        if let Some(end) = around.end.filter(|end| ramp > *end) {
             let path = record.path_of("ramp");
-            report.warn(format!("{path}: {ramp} is beyond the end of the run; it never acts in full"));
+            report.warn(format!(
+                "W0402: {path}: the load grows until t = {ramp}, but the analysis ends at t = {end}. It never acts in full. \
+                 Reduce the ramp, or increase analysis.end."
+            ));
         }
         return Some((ramp, Vec::new()));
     }
@@ -186,9 +190,7 @@ fn in_time<'a>(
     report: &mut Report<'_>,
 ) -> Option<Vec<&'a [f64]>> {
     let (rows, path): (Vec<&[f64]>, _) = (increasing(record, key, report)?.collect(), record.path_of(key));
-    if let Some(row) = rows.iter().find(|row| around.end.is_some_and(|end| row[0] > end)) {
-        report.warn(format!("{path}: the row at t = {} is beyond the end of the run", row[0]));
-    }
+    warn_of_late(&path, rows.iter().map(|row| row[0]), around.end, report);
     coarse(&path, rows.iter().map(|row| row[0]), around.dt, report);
     Some(rows)
 }
@@ -206,15 +208,39 @@ fn path(record: &Record, key: &str, around: AroundStrip<'_>, report: &mut Report
     Some((largest, rows.iter().map(|row| (row[0], Vector::from_fn(|axis, _| share(row, of[axis])))).collect()))
 }
 
+/// Warns of the first time of rows that is after the end of the analysis.
+pub(super) fn warn_of_late(
+    path: &str,
+    mut times: impl Iterator<Item = f64>,
+    end: Option<f64>,
+    report: &mut Report<'_>,
+) {
+    let Some(end) = end else { return };
+    if let Some(t) = times.find(|t| *t > end) {
+        report.warn(format!(
+            "W0403: {path}: the row at t = {t} is after the end of the analysis, t = {end}. It is not reached. Increase \
+             analysis.end, or delete the row."
+        ));
+    }
+}
+
 /// Warns of steps that are longer than the time between two rows.
 fn coarse(path: &str, times: impl Iterator<Item = f64> + Clone, dt: Option<f64>, report: &mut Report<'_>) {
     let intervals = times.clone().skip(1).zip(times).map(|(later, earlier)| later - earlier);
     let interval = intervals.fold(f64::INFINITY, f64::min);
     if let Some(dt) = dt.filter(|dt| interval < 0.999 * dt) {
         report.warn(format!(
-            "{path}: rows are {interval} apart and steps {dt}: what lies between is passed over; give analysis.dt = {interval}"
+            "W0404: {path}: rows are {interval} apart in time, but a step is {dt} long. Peaks between two steps are missed. Use \
+             analysis.dt = {interval}."
         ));
     }
+}
+
+/// Says that the first number of a row, called `name`, is not larger than that of the row before.
+pub(super) fn not_increasing(name: &str, value: f64, before: f64) -> String {
+    format!(
+        "E0402: {name} = {value} in this row is not larger than {before} in the row before. Sort the rows, and delete repeated ones."
+    )
 }
 
 /// Rows whose first number, a time, increases; at least one.
@@ -225,21 +251,17 @@ pub(super) fn increasing<'a>(
 ) -> Option<impl Iterator<Item = &'a [f64]> + use<'a>> {
     let rows = record.rows(key)?;
     if rows.is_empty() {
-        record.error(key, "it needs at least one row", report);
+        record.error(key, "E0435: the table is empty. Give at least one row.", report);
         return None;
     }
     if let Some(late) = (1..rows.len()).find(|&k| rows[k].numbers[0] <= rows[k - 1].numbers[0]) {
-        let message = format!(
-            "{} = {} is not above {}, that of the row before",
-            match key {
-                "line" => "x",
-                "curve" => "the suction",
-                _ => "t",
-            },
-            rows[late].numbers[0],
-            rows[late - 1].numbers[0]
-        );
-        report.error(rows[late].origin, &record.path_of(key), message);
+        let name = match key {
+            "line" => "x",
+            "curve" => "the suction",
+            _ => "t",
+        };
+        let [value, before] = [late, late - 1].map(|row| rows[row].numbers[0]);
+        report.error(rows[late].origin, &record.path_of(key), not_increasing(name, value, before));
         return None;
     }
     Some(rows.iter().map(|row| &row.numbers[..]))
@@ -256,11 +278,15 @@ pub(super) fn initial(
     let record = root.record("initial");
     let elastic = record.is_some_and(|record| record.gives("gravity"));
     if record.is_none() || elastic {
-        let what = if elastic { "with initial.gravity" } else { "without [initial]" };
+        let what = if elastic { "[initial] has `gravity`" } else { "the case has no [initial]" };
         for (_, material) in root.named("material") {
             let is_k0 = |key: &&str| material.gives(key) && (*key == "k0" || is_of_k0(material));
             if let Some(key) = ["k0", "ocr"].into_iter().find(is_k0) {
-                material.error(key, format!("has no meaning {what}"), report);
+                let message = format!(
+                    "E0405: it has no effect, because {what}. Initial stresses by k0 need [initial] without `gravity`. \
+                     Delete this key, or change [initial]."
+                );
+                material.error(key, message, report);
             }
         }
     }
@@ -273,7 +299,11 @@ pub(super) fn initial(
     }
     let dims = root.word::<Geometry>("geometry")?.dims();
     if let Some(gravity) = gravity.filter(|of| !of.acts_down(dims, regime)) {
-        let message = format!("{:?} is not straight down, which a state by k0 needs", &gravity.acceleration[..dims]);
+        let message = format!(
+            "E0406: gravity {:?} does not act straight down. Initial stresses by k0 balance vertical gravity only. Correct it, or \
+             use initial.gravity = \"elastic\".",
+            &gravity.acceleration[..dims]
+        );
         root.record("gravity")?.error("acceleration", message, report);
     }
     at_rest(root, record, bodies?, report).map(Initial::AtRest)
@@ -288,21 +318,19 @@ pub(super) fn shaking(
     const KEY: &str = "acceleration";
     let Some(record) = root.record("shaking") else { return Vec::new() };
     if regime == Some(Regime::QuasiStatic) {
-        let message = "a quasi-static analysis has no inertia that would feel the ground move: analysis.type = \"dynamic\", \
-                       or a constant part of gravity.acceleration along x";
+        let message = "E0414: a quasi-static analysis has no inertia, so shaking has no effect. Use analysis.type = \
+                       \"dynamic\", or a horizontal part of gravity.acceleration (pseudo-static).";
         report.error(record.origin, &record.path, message);
     }
     let Some(rows) = increasing(record, KEY, report) else { return Vec::new() };
     let along = |row: &[f64], axis: usize| row.get(1 + axis).copied().unwrap_or(0.0);
     let rows: Vec<(f64, [f64; 3])> = rows.map(|row| (row[0], [0, 1, 2].map(|axis| along(row, axis)))).collect();
     if rows.iter().all(|(_, ground)| *ground == [0.0; 3]) {
-        record.error(KEY, "the ground rests; leave [shaking] out", report);
+        record.error(KEY, "E0415: all accelerations are zero, so the ground does not shake. Delete [shaking].", report);
         return Vec::new();
     }
     let (Some((end, dt)), path) = (times, record.path_of(KEY)) else { return rows };
-    if let Some((t, _)) = rows.iter().find(|(t, _)| *t > end) {
-        report.warn(format!("{path}: the row at t = {t} is beyond the end of the run"));
-    }
+    warn_of_late(&path, rows.iter().map(|row| row.0), Some(end), report);
     coarse(&path, rows.iter().map(|row| row.0), Some(dt), report);
     rows
 }
@@ -330,7 +358,8 @@ pub(super) fn grow(
     let all = gravity.into_iter().chain(tractions).chain(loads).chain(rigid);
     for (key, ramp) in all.filter(|(_, ramp)| **ramp == 0.0) {
         *ramp = end;
-        report.note(key, format!("{end:?}"), "strength_reduction.unloaded");
+        let reason = "strength_reduction.unloaded: every load grows from zero until the end of the analysis";
+        report.note(key, format!("{end:?}"), reason);
     }
 }
 
@@ -341,7 +370,8 @@ pub(super) fn sudden(case: &Case, report: &mut Report<'_>) {
     }
     for load in case.sudden_loads() {
         report.warn(format!(
-            "{load}: acts in full from time 0, and the stress at the start by k0 does not hold it; give it a ramp"
+            "W0405: {load}: it acts in full from t = 0, but initial stresses by k0 balance the weight alone. The first step \
+             applies all of it at once. Give it a ramp."
         ));
     }
 }
@@ -355,21 +385,29 @@ fn loaded(
     report: &mut Report<'_>,
 ) {
     if !root.gives("gravity") {
-        report.error(record.origin, &record.path, "a stress at the start needs [gravity]");
+        report.error(
+            record.origin,
+            &record.path,
+            "E0407: initial stresses follow from the weight, but the case has no gravity. Add [gravity].",
+        );
     }
     let dims = root.word::<Geometry>("geometry").map_or(3, Geometry::dims);
     if let (Some(gravity), Some(written)) = (gravity, root.record("gravity"))
         && gravity.ramp > 0.0
         && gravity.is_straight(dims)
     {
-        let message =
-            format!("{} with [initial]: gravity acts in full from the start then; allowed: 0.0", gravity.ramp);
+        let message = format!(
+            "E0409: initial stresses include the full weight, but gravity grows until t = {}. Delete gravity.ramp, or [initial].",
+            gravity.ramp
+        );
         written.error("ramp", message, report);
     }
     if let (Some(materials), Some(bodies)) = (materials, bodies)
         && bodies.iter().all(|body| materials[body.material].density.is_none())
     {
-        report.error(record.origin, &record.path, "a stress at the start needs mass: no body has any");
+        let message = "E0408: initial stresses follow from the weight, but no body has any. Give `density` or `unit_weight` in \
+                       [material].";
+        report.error(record.origin, &record.path, message);
     }
 }
 
@@ -387,18 +425,24 @@ fn is_of_k0(material: &Record) -> bool {
 fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
     let (ocr, friction) = (material.number("ocr")?, profile(material, "friction_angle")?);
     if friction.per_metre != 0.0 {
-        material.error("ocr", "the friction angle varies, and k0 with it: give k0, or layers of one angle", report);
+        let message = "E0410: k0 follows from `ocr` and the friction angle, which varies with depth here. Give `k0`, or layers \
+                       with a constant friction angle.";
+        material.error("ocr", message, report);
         return None;
     }
     let sine = friction.value.to_radians().sin();
     let (k0, passive) = ((1.0 - sine) * ocr.powf(sine), (1.0 + sine) / (1.0 - sine));
     let cohesion = profile(material, "cohesion")?;
     if k0 > passive && cohesion.value == 0.0 && cohesion.per_metre == 0.0 {
-        let message = format!("{ocr}: k0 = {k0:.4} would be beyond passive pressure, {passive:.4}; give a smaller one");
+        let message = format!(
+            "E0411: `ocr` = {ocr} gives k0 = {k0:.4}, above the passive limit {passive:.4}. The soil would fail at the start. \
+             Reduce `ocr`."
+        );
         material.error("ocr", message, report);
         return None;
     }
-    report.note(material.path_of("k0"), format!("{k0}"), format!("(1 - sin(phi)) ocr^sin(phi), ocr = {ocr}"));
+    let reason = format!("from ocr = {ocr}: k0 = (1 - sin(phi)) ocr^sin(phi) (Mayne and Kulhawy, 1982)");
+    report.note(material.path_of("k0"), format!("{k0}"), reason);
     Some(k0)
 }
 
@@ -416,10 +460,17 @@ fn at_rest(root: &Record, record: &Record, bodies: &[Body], report: &mut Report<
             false => record.number("k0"),
         };
         if material.gives("k0") && is_of_k0(material) {
-            material.error("ocr", "k0 is given, too: of which it would be the measure; give one of them", report);
+            material.error(
+                "ocr",
+                "E0412: `k0` is given as well, and would follow from `ocr`. Delete one of them.",
+                report,
+            );
         }
         if own.is_none() && bodies.iter().any(|body| body.material == number) {
-            let message = format!("missing: k0 (or one in [material.{name}]), or gravity = \"elastic\"");
+            let message = format!(
+                "E0413: no k0 is given for material `{name}`, so its horizontal stress is unknown. Give initial.k0, \
+                 material.{name}.k0, or initial.gravity = \"elastic\"."
+            );
             report.error(record.origin, &record.path, message);
             return None;
         }

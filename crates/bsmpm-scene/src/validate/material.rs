@@ -57,32 +57,42 @@ impl Reduction {
 pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report<'_>) -> Option<Vec<NamedMaterial>> {
     let named = root.named("material");
     if root.gives("material") && named.is_empty() {
-        root.consequence("material", "at least one [material.NAME] is needed", &["material"], report);
+        let message = "E0301: the case has no material. Add a table [material.NAME] for each soil.";
+        root.consequence("material", message, &["material"], report);
     }
     if named.len() > MOST {
-        root.error("material", format!("{} materials; at most {MOST} are possible", named.len()), report);
+        let message = format!(
+            "E0302: the case has {} materials, and at most {MOST} are possible. Merge materials with equal \
+             parameters.",
+            named.len()
+        );
+        root.error("material", message, report);
         return None;
     }
     let read = named.iter().enumerate().map(|(number, named)| read(number, named, around, report));
     let read: Vec<_> = read.collect();
     let materials = read.into_iter().collect::<Option<Vec<_>>>()?;
     let is_limited = |named: &NamedMaterial| named.material.yields();
-    let rubs = |side: &Side| root.record("boundary").is_some_and(|faces| faces.record(side.word()).is_some());
-    let rubs = Side::ALL.as_flattened().iter().any(rubs)
+    let is_frictional = |side: &Side| root.record("boundary").is_some_and(|faces| faces.record(side.word()).is_some());
+    let has_friction = Side::ALL.as_flattened().iter().any(is_frictional)
         || root
             .records("rigid")
             .iter()
             .chain(root.records("prescribed"))
             .chain(root.record("footing"))
-            .any(has_friction);
-    if root.gives("strength_reduction") && !around.reduction.elastic && !rubs && !materials.iter().any(is_limited) {
-        report.warn("strength_reduction: no material has strength: it does nothing");
+            .any(is_frictional_record);
+    if root.gives("strength_reduction")
+        && !around.reduction.elastic
+        && !has_friction
+        && !materials.iter().any(is_limited)
+    {
+        report.warn(reduction::without_strength("strength_reduction"));
     }
     Some(materials)
 }
 
 /// Whether a rigid body or strip has friction, by what is written of it.
-fn has_friction(record: &Record) -> bool {
+fn is_frictional_record(record: &Record) -> bool {
     let given = |record: &Record| record.number("friction_coefficient").is_some_and(|friction| friction > 0.0);
     given(record) || record.record("components").or(record.record("interface")).is_some_and(given)
 }
@@ -107,8 +117,8 @@ fn read(
     let Reduction { factor, elastic, stiffness, is_for_limit_load } = around.reduction;
     let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
     if factor != 1.0 && !elastic && of_yield {
-        let message = "with a strength_reduction.factor the yield surface through the stress at the start, which this is the \
-                       multiple of, would grow as its strength falls; give preconsolidation";
+        let message = "E0312: with strength_reduction.factor the yield surface that follows from `ocr` would grow \
+                       while the strength is reduced. Give `preconsolidation` instead of `ocr`.";
         record.error("ocr", message, report);
     }
     let (young, poisson, law) = (young?, poisson?, law?);
@@ -146,7 +156,7 @@ impl Layer {
         Some(Self { heights: lower..upper, base: grid.lower()[up] })
     }
 
-    /// An error where a parameter that varies leaves its range; what does not has been held against it already.
+    /// Reports a parameter that varies with height and leaves its range; a constant has been compared with it before.
     fn check(&self, record: &Record, (key, range): (&str, &Range), profile: &Profile, report: &mut Report<'_>) {
         if profile.per_metre == 0.0 && range.contains(profile.value) {
             return;
@@ -155,7 +165,8 @@ impl Layer {
             let value = profile.at(y);
             if !range.contains(value) {
                 let message = format!(
-                    "is {value} at y = {y}, and bodies of this material reach there; allowed: {}",
+                    "E0303: the value is {value} at y = {y} m, where bodies of this material lie; allowed: {}. \
+                     Correct `value` or `per_metre`.",
                     range.condition(key)
                 );
                 record.error(key, message, report);
@@ -171,16 +182,16 @@ pub(super) fn profile(record: &Record, key: &str) -> Option<Profile> {
     Some(Profile { value: table.number("value")?, at: table.number("at_y")?, per_metre: table.number("per_metre")? })
 }
 
-/// Tells what strength is left, at the lowest and the highest place where it differs there.
+/// Notes the reduced strength, at the lowest and the highest place if it differs there.
 fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f64, report: &mut Report<'_>) {
     let at = |y: f64| {
         let law = material.at(y - layer.base);
-        let told = law.parameter_names().iter().zip(law.parameters()).map(|(parameter, value)| {
+        let written = law.parameter_names().iter().zip(law.parameters()).map(|(parameter, value)| {
             let (value, unit) =
                 if parameter.unit == "rad" { (value.to_degrees(), "deg") } else { (value, parameter.unit) };
             format!("{} = {value:.6} {unit}", parameter.name)
         });
-        told.collect::<Vec<_>>().join(", ")
+        written.collect::<Vec<_>>().join(", ")
     };
     let (low, high) = (at(layer.heights.start), at(layer.heights.end));
     if low.is_empty() {
@@ -204,7 +215,7 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
         }
         (_, true) => record.number("density")?,
         _ if regime == Some(Regime::Dynamic) => {
-            let message = "missing: unit_weight or density; a dynamic analysis needs mass";
+            let message = "E0310: a dynamic analysis needs the mass of the material. Add `unit_weight` or `density`.";
             report.error(record.origin, &record.path, message);
             return None;
         }
@@ -229,10 +240,17 @@ fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> 
     }
     let saturated = record.number(KEY)? / STANDARD_GRAVITY;
     match density {
-        None => record.error(KEY, "it has none above the water: give unit_weight or density, too", report),
+        None => {
+            let message =
+                "E0310: the material has no unit weight above the water table. Add `unit_weight` or `density`.";
+            record.error(KEY, message, report);
+        }
         Some(dry) if saturated < dry => {
             let [wet, dry] = [saturated, dry].map(|density| density * STANDARD_GRAVITY * 1e-3);
-            let message = format!("{wet:.6} kN/m3 is lighter than above the water, {dry:.6} kN/m3");
+            let message = format!(
+                "E0309: the saturated unit weight ({wet:.6} kN/m3) is below the unit weight above the water table \
+                 ({dry:.6} kN/m3). Correct one of them."
+            );
             record.error(KEY, message, report);
         }
         Some(_) => {}
@@ -245,7 +263,8 @@ fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> 
 fn retardation(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
     let Some(damping) = record.record("damping") else { return Some(0.0) };
     if regime == Some(Regime::QuasiStatic) {
-        let message = "the time of a quasi-static analysis is no time: damping needs a dynamic one";
+        let message = "E0311: a quasi-static analysis has no velocities, so damping cannot act. Remove `damping`, or \
+                       use analysis.type = \"dynamic\".";
         record.error("damping", message, report);
     }
     let (ratio, frequency) = (damping.number("ratio")?, damping.number("frequency")?);
@@ -254,9 +273,9 @@ fn retardation(record: &Record, regime: Option<Regime>, report: &mut Report<'_>)
     Some(time)
 }
 
-/// Poisson's ratio above which elastic material is warned of as nearly incompressible.
+/// Poisson's ratio above which an elastic material is nearly incompressible.
 const STIFF: f64 = 0.4999;
-/// That from which on material is that yields: Tresca's footing takes three times the iterations there.
+/// Poisson's ratio from which a material that yields is: Tresca's footing takes three times the iterations there.
 const STIFF_TO_FLOW: f64 = 0.499;
 
 fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {
@@ -264,7 +283,7 @@ fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, 
     let least = if record.has_unit("young") { 1e3 } else { 0.0 };
     if let Some(young) = young.filter(|young| !(least..=1e12).contains(young)) {
         report.warn(format!(
-            "{}: young = {young:e} Pa = {:e} kPa is unusual: check the unit",
+            "W0302: {}: Young's modulus is {} kPa; usual are 1 kPa to 1000 GPa. Check the unit of `young`.",
             record.path,
             young * 1e-3
         ));
@@ -275,26 +294,26 @@ fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, 
     let by_itself =
         [LawName::SensitiveClay, LawName::MuI, LawName::CamClay].contains(&model) || record.gives("drainage");
     let instead = young.filter(|_| !by_itself).map(|young| as_undrained(young, poisson));
-    let instead = instead.map_or(String::new(), |(young, bulk)| {
-        format!(
-            "; as undrained soil it takes a fraction of them, with a smooth pressure: analysis.type = \"consolidation\" (and end in s), \
-             water.bulk = {bulk:.5e}, and of the material young = {young:.5e}, poisson = {DRAINED}, drainage = \"undrained\", \
-             porosity = {POROSITY}; stress - excess_pressure is then the total stress"
-        )
+    let path = &record.path;
+    report.warn(match instead {
+        Some((young, bulk)) => format!(
+            "W0303: {path}: poisson = {poisson} makes the pressure oscillate. Use a consolidation analysis with \
+             drainage = \"undrained\", young = {young:.5e}, poisson = {DRAINED}, porosity = {POROSITY}, water.bulk = \
+             {bulk:.5e}."
+        ),
+        None => format!(
+            "W0303: {path}: poisson = {poisson} makes the pressure oscillate, and the solver needs many iterations. \
+             Use poisson = 0.49 or less."
+        ),
     });
-    report.warn(format!(
-        "{}: poisson = {poisson} is nearly incompressible: expect many iterations, and pressures that jump from point to \
-         point{instead}",
-        record.path
-    ));
 }
 
 /// Poisson's ratio of a skeleton whose water carries the pressure, and the part of the volume that it has.
 const DRAINED: f64 = 0.25;
 const POROSITY: f64 = 0.5;
 
-/// Young's modulus of such a skeleton, and the bulk modulus of its water, with which undrained soil is elastic as
-/// `young` and `poisson` tell.
+/// Young's modulus of such a skeleton, and the bulk modulus of its water, with which undrained soil has the elasticity
+/// of `young` and `poisson`.
 fn as_undrained(young: f64, poisson: f64) -> (f64, f64) {
     let skeleton = young * (1.0 + DRAINED) / (1.0 + poisson);
     let bulk = |young: f64, poisson: f64| young / (3.0 * (1.0 - 2.0 * poisson));

@@ -3,7 +3,7 @@
 use super::place::is_in;
 use crate::case::{Acting, Case};
 use crate::record::Record;
-use crate::report::Report;
+use crate::report::{Report, brief};
 use crate::surfaces::transition::{ROUNDING, apart_at_corner, holds_all, meet};
 use crate::surfaces::{self, name_of_strip};
 use crate::words::Geometry;
@@ -88,50 +88,51 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
     match meeting.other {
         Other::Rigid(_) => {
             let message = format!(
-                "{other} continues the surface of {name} and moves differently. The soil cannot follow both. Use [[prescribed]] \
-                 for both, [[rigid]] for both, or leave a cell between them."
+                "E0251: `{other}` continues the surface of `{name}` and moves differently, so the soil cannot follow \
+                 both. Use [[prescribed]] or [[rigid]] for both, or leave a cell between them."
             );
             record.error("from", message, report);
         }
         Other::Corner { apart, .. } => {
             let message = format!(
-                "{name} and {other} share a corner, and their motions differ there by {apart:.3e} m in a direction that both \
-                 hold. The soil cannot follow both. Use components = \"normal\" in both, or leave a cell between them."
+                "E0251: `{name}` and `{other}` share a corner, and prescribe displacements that differ by {} m \
+                 there. Use components = \"normal\" in both, or leave a cell between them.",
+                brief(apart)
             );
             record.error("from", message, report);
         }
         Other::Strip { act_together: false, .. } => {
             let message = format!(
-                "{other} meets {name}, moves differently, and acts since another time. The soil cannot follow both. Let both \
-                 act from the same time, or leave a cell between them."
+                "E0251: `{other}` meets `{name}`, moves differently, and begins to act at another time. The soil \
+                 cannot follow both. Apply both in the same stage, or leave a cell between them."
             );
             record.error("from", message, report);
         }
         Other::Strip { sliding, edge, .. } if sliding > ROUNDING * edge => {
             let message = format!(
-                "{other} meets {name}, both hold the soil along their surface, and their motions along it differ by \
-                 {sliding:.3e} m. The soil cannot follow both. Let one of them hold the normal component only, or leave a cell \
-                 between them."
+                "E0251: `{name}` and `{other}` meet, and their tangential displacements differ by {} m. The soil \
+                 cannot follow both. Use components = \"normal\" in one, or leave a cell between them.",
+                brief(sliding)
             );
             record.error("from", message, report);
         }
         Other::Strip { along, edge, .. } if along > ALONG * edge => {
             let message = format!(
-                "{other} meets {name} and moves differently, and one of them moves {along:.3} m along its surface (at most \
-                 {:.3} m, {ALONG} cells). The soil cannot follow both. Leave a cell between them.",
+                "E0251: `{name}` and `{other}` meet and move differently, one of them {along:.3} m along its own \
+                 surface (at most {:.3} m). The soil cannot follow both. Leave a cell between them.",
                 ALONG * edge
             );
             record.error("from", message, report);
         }
         Other::Strip { apart, edge, .. } => {
-            let value = format!("shares its end with {other}");
-            let reason = "they move differently: the motion changes from one to the other over about one cell, and the reaction in \
-                          that cell is divided between them";
+            let value = format!("shares its end with `{other}`");
+            let reason = "their motions differ: the displacement changes from one to the other over about one cell, \
+                          and its reaction is divided between them";
             report.note(&name, &value, reason);
             if apart > APART * edge {
                 report.warn(format!(
-                    "{name} and {other} meet, and their motions differ by {apart:.3} m, {:.1} cells: the material between \
-                     them is deformed within one cell. Reduce the displacement, or use larger cells there.",
+                    "W0233: `{name}` and `{other}` meet, and their displacements differ by {apart:.3} m ({:.1} cells). \
+                     The soil between them is sheared within one cell. Reduce the displacement.",
                     apart / edge
                 ));
             }

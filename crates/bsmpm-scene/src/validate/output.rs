@@ -17,15 +17,23 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
     };
     if let (Some(Every::Time(every)), Some(end)) = (every, end) {
         if every > end {
-            report.warn(format!("output.every: {every} is beyond the end of the run: the first and last frame only"));
+            report.warn(format!(
+                "W0661: output.every: the interval of {every} is longer than the run of {end}, so only the first and \
+                 last frames are written. Reduce it."
+            ));
         }
         if end / every > super::MOST_STEPS {
-            output.error("every", format!("{:.3e} frames are too many", end / every), report);
+            let message = format!(
+                "E0662: this interval gives {:.3e} frames, and at most {:e} are possible. Increase `every`.",
+                end / every,
+                super::MOST_STEPS
+            );
+            output.error("every", message, report);
         }
     }
     let mut times = if output.gives("times") { output.numbers("times")?.to_vec() } else { Vec::new() };
     if let Some(late) = times.iter().find(|time| end.is_some_and(|end| **time > end)) {
-        output.error("times", format!("{late} is beyond the end of the run"), report);
+        output.error("times", super::history::after_the_end(*late), report);
         return None;
     }
     times.sort_by(f64::total_cmp);

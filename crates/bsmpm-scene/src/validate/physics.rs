@@ -43,7 +43,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 /// Times that lie so near to the start that no step ends there.
 fn too_soon(case: &Case, record: &Record, report: &mut Report<'_>) {
     let least = 1e-6 * case.analysis.dt;
-    let message = |time: f64| format!("{time} is no step away from the start; allowed: at least 1e-6 dt = {least}");
+    let message =
+        |time: f64| format!("E0664: the time {time:e} is not after the start, t = 0. Use a time above {least:e}.");
     if let (Some(time), Some(output)) = (case.output.times.first(), record.record("output"))
         && *time <= least
     {
@@ -65,10 +66,14 @@ fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
             continue;
         }
         if !matches!(case.initial, Some(Initial::AtRest(_))) {
-            let message = "its stiffness is that of its pressure, so it has no state without stress: give [initial] k0";
+            let message = "E0318: the stiffness of this model follows the stress, so it needs initial stresses. Add \
+                           [initial] with `k0`.";
             written.error("model", message, report);
         } else if named.density.is_none() {
-            let message = format!("missing: unit_weight or density; without weight material.{name} has no pressure");
+            let message = format!(
+                "E0310: without weight material.{name} has no initial stress, from which its stiffness follows. Add \
+                 `unit_weight` or `density`."
+            );
             report.error(written.origin, &written.path, message);
         }
     }
@@ -77,7 +82,7 @@ fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
 /// Plastic strain of a step above which its logarithm is found to 1e-9 (`tests/material/softening.rs` of `bsmpm`).
 const DIGITS: f64 = 5e-14;
 
-/// A rate needs a time: that of a quasi-static analysis is none.
+/// A rate needs real time, which a quasi-static analysis does not have.
 fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
     let named = case.materials.iter().zip(record.named("material")).enumerate();
     let made = |number: usize| case.is_followed(number);
@@ -86,12 +91,18 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let is_timed = kind == AnalysisType::Dynamic || kind == AnalysisType::InTime && is_of_clay;
         if !is_timed && named.material.over(1.0).is_some() {
             let message = match (kind, is_of_clay) {
-                (AnalysisType::Consolidation, _) => "strength by the rate was not shown to be right where water flows",
-                (_, true) => {
-                    "the time of a quasi-static analysis is no time: a strength by the rate needs \"quasi-static-rate\" or \
-                     \"dynamic\""
+                (AnalysisType::Consolidation, true) => {
+                    "E0319: a rate-dependent strength is not available in a consolidation analysis. Remove \
+                     `rate_parameter` and `reference_rate`."
                 }
-                (_, false) => "its strength by the rate was shown to be right in dynamics only: take \"dynamic\"",
+                (_, true) => {
+                    "E0319: a rate-dependent strength needs real time. Use analysis.type = \"quasi-static-rate\" or \
+                     \"dynamic\", or remove `rate_parameter` and `reference_rate`."
+                }
+                (_, false) => {
+                    "E0319: the strength of this model depends on the rate, which is available in dynamics only. Use \
+                     analysis.type = \"dynamic\"."
+                }
             };
             let key = if is_of_clay { "rate_parameter" } else { "model" };
             written.error(key, message, report);
@@ -99,8 +110,8 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let slowest = written.number("reference_rate").filter(|_| is_of_clay).map(|rate| rate * case.analysis.dt);
         if let Some(strain) = slowest.filter(|strain| *strain < DIGITS) {
             report.warn(format!(
-                "{}: the strain of a step at that rate is {strain:.1e}, near the last digits of what strains are made of: \
-                 strength there is off by up to rate_parameter; a larger rate, with the cohesion of it",
+                "W0312: {}: the strain of one step at this rate is {strain:.1e} (limit {DIGITS:e}), too small for an \
+                 accurate strength. Increase `reference_rate`, and give the cohesion at that rate.",
                 written.path_of("reference_rate")
             ));
         }
@@ -115,7 +126,7 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
         return;
     }
     let message = format!(
-        "E0202: no support holds the bodies along {}, and a quasi-static analysis has no solution. Set a side of [boundary] \
+        "E0270: no support holds the bodies along {}, and a quasi-static analysis has no solution. Set a side of [boundary] \
          that a body reaches to \"fixed\" or \"roller\".",
         free.join(" and ")
     );
@@ -132,25 +143,28 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let side = Side::ALL[axis][upper].word();
         let mut refuse = |message: &str| boundary.error(side, message, report);
         if case.analysis.regime == Regime::QuasiStatic {
-            refuse("there are no waves in a quasi-static analysis: \"fixed\" or \"roller\" holds what is at rest");
+            refuse(
+                "E0671: an absorbing boundary supports nothing in a quasi-static analysis, which has no waves. Use \
+                 \"fixed\" or \"roller\".",
+            );
         }
         if case.gravity.is_some() && case.initial.is_none() {
             refuse(
-                "holds nothing at rest but the state of [initial], and gravity would press the ground through it: give \
-                    [initial]",
+                "E0672: an absorbing boundary carries initial stresses only, so the ground would sink through it \
+                 under gravity. Add [initial].",
             );
         }
         if case.boundary[1 - axis].contains(&Support::Contact) {
             refuse(
-                "beside a face in contact: who holds the node that both have, and what it holds of [initial], is not \
-                    settled; fix or absorb there, too",
+                "E0673: this absorbing boundary shares a corner with a boundary in contact, and the corner would be \
+                 constrained twice. Make the other one \"fixed\" or \"absorbing\".",
             );
         }
         let absorbs = case.boundary[axis][upper] == Support::Absorbing;
         if absorbs && axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
             refuse(
-                "beside ground that shakes, what comes to a side is not known without the motion of the free field there: \
-                    use \"free-field\", or \"roller\" far enough away; \"bottom\" may absorb",
+                "E0674: in an earthquake the ground moves with the free field, and an absorbing side would hold it \
+                 back. Use \"free-field\".",
             );
         }
     }
@@ -161,7 +175,8 @@ fn shaken(case: &Case, report: &mut Report<'_>) {
     for (component, name) in ["x", "y", "z"].into_iter().enumerate() {
         if case.shaking.iter().any(|(_, ground)| ground[component] != 0.0) && !holds(case, component) {
             report.warn(format!(
-                "shaking: the ground moves along {name}, and nothing holds the bodies along {name}: they do not go with it"
+                "W0670: shaking: the base moves along {name}, but no body is supported along {name}, so none follows \
+                 it. Fix a side along {name}, usually the bottom."
             ));
         }
     }
@@ -196,8 +211,8 @@ fn thrown_back(case: &Case, report: &mut Report<'_>) {
         return;
     }
     report.warn(format!(
-        "analysis.dt = {}: a wave crosses a body of {name} in {time:.3e} s: what meets a face in contact in so long steps is \
-         thrown back with energy that it did not have; give analysis.dt <= {:.1e}, or gamma = 1",
+        "W0671: analysis.dt: a step of {:.3e} s is longer than {MOST_CROSSINGS} passages of a wave through {name} \
+         ({time:.3e} s), so impacts gain energy. Use dt = {:.1e} s or less.",
         case.analysis.dt,
         MOST_CROSSINGS * time
     ));
@@ -231,8 +246,8 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let is_sought = case.settles || case.initial == Some(Initial::Elastic);
     if footing && !stands && is_sought {
         report.warn(
-            "footing: nothing else holds the bodies along every axis, so that they hang from it in the equilibrium of [initial]: \
-             fix a face, or let a [[stage]] apply it",
+            "W0672: footing: nothing else supports the ground, so it hangs from the footing in the initial \
+             equilibrium. Fix a side, or activate the footing in a [[stage]].",
         );
     }
     let since_start = |case: &Case, number: usize| {
@@ -243,8 +258,8 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         case.prescribed[number].rests = lies && lifts;
         if lies && !lifts && is_sought && since_start(case, number) {
             report.warn(format!(
-                "{}: it lies on the ground, which hangs from it in the equilibrium of [initial]; where it shall rest \
-                 there make it the [footing], let a [[stage]] apply it, or give components = {{ friction = 0.3, lifts = true }}",
+                "W0672: {}: the ground hangs from this prescribed motion in the initial equilibrium. Activate it in a \
+                 [[stage]], or use [footing].",
                 record.path
             ));
         }
@@ -257,8 +272,8 @@ pub(super) fn holds_at_rest(case: &Case, component: usize, except: Option<Acting
         Support::Fixed => true,
         Support::Roller => axis == component,
         Support::Contact => {
-            let rubs = case.contacts[axis][usize::from(upper)].is_some_and(|contact| contact.friction > 0.0);
-            axis == component || rubs
+            let has_friction = case.contacts[axis][usize::from(upper)].is_some_and(|contact| contact.friction > 0.0);
+            axis == component || has_friction
         }
         Support::Absorbing | Support::FreeField | Support::Free | Support::Outflow => false,
     };
@@ -300,8 +315,8 @@ pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
         |history: &History| matches!(history.quantity, Quantity::Runout { percentile, .. } if percentile < 100.0);
     let records_front = case.histories.iter().any(|history| history.quantity == Quantity::Front);
     if records_front && !case.histories.iter().any(is_percentile) {
-        let reason = "on a fixed face a tip thinner than a cell runs ahead by 10 to 20 % of the run-out. Add quantity = \
-                      \"runout\" with percentile = 99";
+        let reason = "a front thinner than a cell runs ahead by 10 to 20 % of the run-out; quantity = \"runout\" with \
+                      percentile = 99 is more accurate";
         report.note("history", Measurement::Front.word(), reason);
     }
     let given = record.record("analysis").is_some_and(|analysis| analysis.gives("wall_velocity"));
@@ -309,7 +324,7 @@ pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
         return;
     }
     case.analysis.wall_velocity = WallVelocity::Relaxed;
-    let reason = "material flows along a fixed face: points there do not keep velocities that are not their motion";
+    let reason = "granular flow along a fixed boundary: velocities near it follow the motion of the grid";
     report.note("analysis.wall_velocity", WallVelocity::Relaxed.word(), reason);
 }
 
@@ -323,21 +338,30 @@ pub(super) fn reached(case: &Case, axis: usize, upper: bool) -> bool {
 
 fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
     for (_, material) in case.materials.iter().enumerate().filter(|(number, _)| !case.is_followed(*number)) {
-        report.warn(format!("material.{}: no body is made of it", material.name));
+        report.warn(format!(
+            "W0313: material.{}: no body consists of this material. Assign it to a body, or remove it.",
+            material.name
+        ));
     }
     let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
     if case.gravity.is_some() && !weighs && case.rigid.iter().all(|rigid| rigid.mass == [0.0; 2]) {
-        report.warn("gravity: no body has mass: it does nothing");
+        report.warn(
+            "W0314: gravity: no body has mass, so gravity has no effect. Add `unit_weight` to the materials, or \
+             remove [gravity].",
+        );
     }
     let dynamic = case.analysis.regime == Regime::Dynamic;
     if dynamic && case.analysis.mass == MassMatrix::Lumped && case.rotates_at_start() {
         report.warn(
-            "material rotates at the start, and analysis.mass is \"lumped\", which slows it (a body of 4 cells lost 12 \
-             % of its angular momentum in 0.2 rad). Set analysis.mass = \"consistent\".",
+            "W0673: analysis.mass: bodies rotate at the start, and the lumped mass matrix slows the rotation. Use \
+             mass = \"consistent\".",
         );
     }
     if case.analysis.regime == Regime::QuasiStatic && !loaded(case) {
-        report.warn("nothing loads the bodies: there is no [gravity], no load, and nothing that moves");
+        report.warn(
+            "W0674: the case has no load: neither gravity, nor a force or pressure, nor a prescribed motion. Add one \
+             of them, for example [gravity].",
+        );
     }
 }
 
@@ -359,12 +383,15 @@ fn warn_of_locking(case: &Case, report: &mut Report<'_>) {
         let named = &case.materials[body.material];
         let poisson = named.material.elastic().poisson;
         let reason = match named.material.yields() {
-            true => "is plastic".to_owned(),
-            false if poisson > NEARLY_INCOMPRESSIBLE => format!("has poisson = {poisson} > {NEARLY_INCOMPRESSIBLE}"),
+            true => "yields".to_owned(),
+            false if poisson > NEARLY_INCOMPRESSIBLE => {
+                format!("has poisson = {poisson}, above {NEARLY_INCOMPRESSIBLE}")
+            }
             false => continue,
         };
         report.warn(format!(
-            "stabilisation: absent is none, and material.{} {reason}: expect locking and oscillating stress",
+            "W0315: stabilisation: material.{} {reason}: without stabilisation it is too stiff (locking) and its \
+             stress oscillates. Use method = \"consistent-f-bar\".",
             named.name
         ));
         return;

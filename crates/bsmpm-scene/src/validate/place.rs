@@ -5,6 +5,7 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::Side;
+use std::fmt;
 
 /// Parts of a cell by which a place may lie beyond the grid: rounding.
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -19,23 +20,43 @@ const DIRECTIONS: usize = 16;
 /// Parts of half the spacing of its points at which a body is looked for: a body may be thinner than that.
 const DISTANCES: [f64; 3] = [0.02, 0.5, 1.0];
 
-/// Says that a place lies outside the grid, if it does.
-pub(super) fn beyond<const D: usize>(grid: &GridSpec, at: [f64; D]) -> Option<String> {
+/// A coordinate outside the grid. `{}` writes a part of a sentence; as a text it is a whole message.
+pub(super) struct Outside {
+    axis: &'static str,
+    at: f64,       // m
+    bound: f64,    // m
+    is_past: bool, // beyond the upper end of the grid
+}
+
+impl fmt::Display for Outside {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { axis, at, bound, is_past } = self;
+        let verb = if *is_past { "ends" } else { "starts" };
+        write!(f, "{axis} = {at} m is outside the grid, which {verb} at {axis} = {bound} m")
+    }
+}
+
+impl From<Outside> for String {
+    fn from(outside: Outside) -> Self {
+        format!("E0201: {outside}. Move it into the grid, or enlarge the grid.")
+    }
+}
+
+/// The coordinate of a place that lies outside the grid, if there is one.
+pub(super) fn beyond<const D: usize>(grid: &GridSpec, at: [f64; D]) -> Option<Outside> {
     let (lower, upper) = (grid.lower(), grid.upper());
     (0..D).find_map(|axis| {
         let spacing = f64::EPSILON * lower[axis].abs().max(upper[axis].abs());
         let slack = ROUNDING * grid.axes[axis].shortest() + 4.0 * spacing;
-        let name = ["x", "y", "z"][axis];
-        if at[axis] < lower[axis] - slack {
-            return Some(format!("{} is outside the grid, which starts at {name} = {}", at[axis], lower[axis]));
-        }
-        let past = at[axis] > upper[axis] + slack;
-        past.then(|| format!("{} is outside the grid, which ends at {name} = {}", at[axis], upper[axis]))
+        let is_past = at[axis] > upper[axis] + slack;
+        let bound = if is_past { upper[axis] } else { lower[axis] };
+        let outside = Outside { axis: ["x", "y", "z"][axis], at: at[axis], bound, is_past };
+        (is_past || at[axis] < lower[axis] - slack).then_some(outside)
     })
 }
 
 /// As [`beyond`], of a place that in a plane has nothing along its normal.
-pub(super) fn is_beyond(grid: &GridSpec, at: [f64; 3]) -> Option<String> {
+pub(super) fn is_beyond(grid: &GridSpec, at: [f64; 3]) -> Option<Outside> {
     if grid.dims() == 2 { beyond(grid, [at[0], at[1]]) } else { beyond(grid, at) }
 }
 
@@ -131,7 +152,9 @@ pub(super) fn face(record: &Record, grid: &GridSpec, report: &mut Report<'_>) ->
     let side: Side = record.word("face")?;
     let face = Face::of(side, if grid.dims() == 3 { Geometry::Solid } else { Geometry::PlaneStrain });
     if face.is_none() {
-        record.error("face", format!("a grid in a plane has no face \"{side}\""), report);
+        let message =
+            format!("E0207: a 2-D grid has no face \"{side}\". Use left, right, bottom or top, or geometry = \"3d\".");
+        record.error("face", message, report);
     }
     face
 }

@@ -19,15 +19,19 @@ pub(super) fn read_all(
 ) -> Vec<Profile> {
     let records = root.records("profile");
     if records.len() > MOST {
-        root.error("profile", format!("{} profiles; at most {MOST} are possible", records.len()), report);
+        root.error("profile", history::too_many(records.len(), MOST), report);
         return Vec::new();
     }
     let mut profiles: Vec<Profile> = Vec::new();
     for record in records {
         let Some(profile) = read((root, record), (regime, grid, end), report) else { continue };
-        // Files of some systems are not told apart by the case of letters.
+        // Some file systems do not distinguish upper and lower case.
         if profiles.iter().any(|other| other.name.eq_ignore_ascii_case(&profile.name)) {
-            record.error("name", format!("there is a profile `{}` already", profile.name), report);
+            let message = format!(
+                "E0610: another profile has the name `{}` (upper and lower case count as equal). Rename one of them.",
+                profile.name
+            );
+            record.error("name", message, report);
         }
         profiles.push(profile);
     }
@@ -42,20 +46,22 @@ fn read(
     let ends = history::ends(record, grid, report);
     let quantities: Vec<ProfileQuantity> = record.choices("quantities")?;
     if quantities.is_empty() {
-        record.error("quantities", "nothing is told: name at least one", report);
+        record.error("quantities", "E0652: the list is empty, so the profile has no values. Name a quantity.", report);
     }
     if regime == Some(Regime::QuasiStatic) && quantities.contains(&ProfileQuantity::Velocity) {
-        record.error("quantities", "there is no velocity in a quasi-static analysis", report);
+        record.error("quantities", history::needs_dynamics("velocity"), report);
     }
     if quantities.contains(&ProfileQuantity::ExcessPressure) && !super::flow::flows(root) {
-        record.error("quantities", "no water flows: there is no \"excess-pressure\"", report);
+        record.error("quantities", history::needs_flow("excess-pressure"), report);
     }
     let mut times = if record.gives("times") { record.numbers("times")?.to_vec() } else { Vec::new() };
     if record.gives("times") && times.is_empty() {
-        record.error("times", "it is never told: give a time, or leave the key out for all frames", report);
+        let message = "E0652: the list is empty, so the profile is never written. Give a time, or remove `times` to \
+                       write it with every frame.";
+        record.error("times", message, report);
     }
     if let Some(late) = times.iter().find(|time| end.is_some_and(|end| **time > end)) {
-        record.error("times", format!("{late} is beyond the end of the run"), report);
+        record.error("times", history::after_the_end(*late), report);
         return None;
     }
     times.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! Pore pressure that points carry, `ru`, and what is not shown to be right together with it.
+//! Pore pressure that points carry, `ru`, and what it cannot be combined with.
 
 use crate::case::{Body, Case, Support};
 use crate::record::Record;
@@ -16,23 +16,33 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     };
     let material = &material.1;
     if !case.carries_pressure() {
-        report.warn(format!("{}: no body is of this material: it does nothing", material.path_of(KEY)));
+        report.warn(format!(
+            "W0313: {}: no body consists of this material, so `ru` has no effect. Assign the material to a body, or \
+             remove it.",
+            material.path_of(KEY)
+        ));
         return;
     }
     if root.gives("water") || case.flow.is_some() {
         let message = if case.flow.is_some() {
-            "is the pore pressure of water that does not flow: with \"coupled\" or \"undrained\" soil the flow makes it, from \
-             that of [water] at the start; leave ru out, or drainage"
+            "E0320: the pore pressure is already computed by the flow of water in this case. Remove `ru`, or \
+             `drainage` of all materials."
         } else {
-            "[water] gives the pore pressure, too: give one of them"
+            "E0320: the pore pressure is already given by the water table in [water]. Remove `ru`, or [water]."
         };
         material.error(KEY, message, report);
     }
     match &case.gravity {
-        None => material.error(KEY, "nothing weighs without [gravity]", report),
+        None => {
+            let message = "E0321: a pore pressure ratio needs the weight of the ground. Add [gravity].";
+            material.error(KEY, message, report);
+        }
         Some(gravity) if !gravity.acts_down(case.grid.dims(), Some(case.analysis.regime)) => {
-            let message =
-                format!("gravity.acceleration = {:?} is not straight down", &gravity.acceleration[..case.grid.dims()]);
+            let message = format!(
+                "E0321: a pore pressure ratio needs vertical gravity, and gravity.acceleration = {:?}. Set its other \
+                 components to 0.",
+                &gravity.acceleration[..case.grid.dims()]
+            );
             material.error(KEY, message, report);
         }
         Some(_) => {}
@@ -40,31 +50,40 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let changes = |stage: &crate::case::Stage| !(stage.add.is_empty() && stage.remove.is_empty());
     let exchanges = |stage: &crate::case::Stage| stage.materials.iter().any(|&(from, to)| wet(from) || wet(to));
     if case.stages.iter().any(|stage| changes(stage) || exchanges(stage)) {
-        let message = "points carry it from the start, whatever stages place, take away or exchange: it cannot be used \
-                       with those";
+        let message = "E0322: the pore pressure from `ru` cannot follow stages that add or remove bodies or change \
+                       materials. Use [water], or leave out these stages.";
         material.error(KEY, message, report);
     }
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
-        material.error(KEY, "it does not follow ground that shakes: it cannot be used with [shaking]", report);
+        let message = "E0322: the pore pressure from `ru` cannot follow an earthquake. Remove `ru` or [shaking].";
+        material.error(KEY, message, report);
     }
     for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
         if matches!(support, Support::Absorbing | Support::FreeField) {
             let side = side.word();
-            material.error(KEY, format!("boundary.{side} absorbs, which was not shown to be right beside it"), report);
+            let message = format!(
+                "E0322: the pore pressure from `ru` is not available with the absorbing boundary `{side}`. Set \
+                 boundary.{side} = \"fixed\" or \"roller\"."
+            );
+            material.error(KEY, message, report);
         }
     }
     if bodies().any(|number| !wet(number)) {
-        report.note(material.path_of(KEY), "this material only", "pores of the others hold no pressure");
+        report.note(material.path_of(KEY), "this material only", "the other materials have no pore pressure");
     }
     warn_of_thin_bodies(case, report);
     warn_of_cubic_splines(case, report);
     if !case.tractions.is_empty() || !case.point_loads.is_empty() {
-        report.note(material.path_of(KEY), "of the weight alone", "loads raise no pore pressure: they are drained");
+        report.note(
+            material.path_of(KEY),
+            "from the weight alone",
+            "applied loads are drained and raise no pore pressure",
+        );
     }
 }
 
-/// A face divides the normal force right where the material at it is at least a cell thick: in a body of half a cell
-/// friction was 25 % too large.
+/// The normal force on a face is divided correctly where the material there is at least a cell thick: in a body of half
+/// a cell friction was 25 % too large.
 fn warn_of_thin_bodies(case: &Case, report: &mut Report<'_>) {
     for axis in (0..case.grid.dims()).filter(|axis| has_friction(case, *axis)) {
         let edge = case.grid.axes[axis].longest();
@@ -73,19 +92,20 @@ fn warn_of_thin_bodies(case: &Case, report: &mut Report<'_>) {
         let thickest = thickest.fold(0.0, f64::max);
         if thickest < edge {
             report.warn(format!(
-                "ru: bodies are {thickest:.3} m thick at a face with friction, less than a cell of {edge:.3} m. Its friction is up \
-                 to 30 % too large. Use smaller cells."
+                "W0316: ru: bodies on a boundary with friction are {thickest:.3} m thick, less than a cell of \
+                 {edge:.3} m. The friction is up to 30 % too large. Use smaller cells."
             ));
         }
     }
 }
 
-/// With cubic splines the normal forces of nodes near a corner are too far from their pore pressures.
+/// With cubic splines the normal forces of nodes near a corner lie too far from their pore pressures.
 fn warn_of_cubic_splines(case: &Case, report: &mut Report<'_>) {
     let has_side = (0..case.grid.dims() - 1).any(|axis| has_friction(case, axis));
     if case.grid.order > 2 && has_side {
         report.warn(
-            "ru: with cubic splines friction on sides of the grid is up to 6 % off. Use grid.degree = \"quadratic\".",
+            "W0317: ru: with cubic splines the friction on the sides of the grid has an error of up to 6 %. Use \
+             grid.degree = \"quadratic\".",
         );
     }
 }

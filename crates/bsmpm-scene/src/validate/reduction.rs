@@ -1,10 +1,10 @@
-//! Strength that is divided not from the start on but in a stage, or at the end of one: what is left of the case until
-//! then, and the steps that follow.
+//! Strength that is reduced not from the start but in a stage, or at the end of one: the case until then, and the steps
+//! that follow.
 
 use crate::case::{Acting, Case, Counted, Gravity, PointLoad, Quantity, Rigid, Stage, Traction};
-use crate::nearest::hint;
+use crate::nearest::unknown_name;
 use crate::record::Record;
-use crate::report::{Report, shortened};
+use crate::report::Report;
 use crate::words::Failure;
 use bsmpm::model::Regime;
 use bsmpm::schedule::between;
@@ -25,15 +25,23 @@ pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mu
     let followed = || times.iter().flat_map(|t| case.followed_at(*t));
     if let Some(named) = followed().find(|named| !named.material.is_linear()) {
         let message = format!(
-            "material.{}: its strength and what it was compressed by are one state, which cannot be divided under the \
-             stress that it has; of the start: [strength_reduction] without stage",
+            "E0630: the strength of material.{} (modified Cam-clay) cannot be reduced at the end of a stage. Reduce \
+             it from the start, without `stage`.",
             named.name
         );
         record.error(key, message, report);
     }
     if !times.iter().any(|t| case.has_friction_at(*t)) && !followed().any(|named| named.material.yields()) {
-        report.warn(format!("{}: no material has strength: it does nothing", record.path_of(key)));
+        report.warn(without_strength(&record.path_of(key)));
     }
+}
+
+/// The warning that a strength reduction at a key path has nothing to reduce.
+pub(super) fn without_strength(path: &str) -> String {
+    format!(
+        "W0601: {path}: the strength reduction has no effect, because neither a material nor a contact has a \
+         strength. Remove it, or use a material that yields."
+    )
 }
 
 /// Ends the case with the reduction at the end of the stage that `[strength_reduction]` names, if it does.
@@ -41,50 +49,51 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     let Some(table) = root.record("strength_reduction") else { return };
     if !table.gives("stage") {
         let of_stage = ["steps", "drainage"].into_iter().filter(|key| table.gives(key));
-        of_stage.for_each(|key| table.error(key, "has no meaning without stage", report));
+        let message = "E0631: the key has no effect without `stage`, the stage at whose end the strength is reduced. \
+                       Remove it, or add `stage`.";
+        of_stage.for_each(|key| table.error(key, message, report));
         return;
     }
     let (Some(name), Some(factor)) = (table.text("stage"), table.number("factor")) else { return };
     let (Some(steps), Some(unloaded)) = (table.count("steps"), table.flag("unloaded")) else { return };
     if case.analysis.regime == Regime::Dynamic {
-        let message = "it looks for equilibrium, and needs a quasi-static analysis; in a dynamic one a [[stage]] with \
-                       strength_reduction lets the body fail in time";
+        let message = "E0632: a strength reduction at the end of a stage needs a quasi-static analysis. In a dynamic \
+                       one, set `strength_reduction` in a [[stage]].";
         table.error("stage", message, report);
     }
     let Some(until) = case.end_of_stage(name) else {
         let names = case.stages.iter().filter_map(|stage| stage.name.as_deref());
-        let message = format!(
-            "there is no [[stage]] with name = \"{}\"{}; \"start\" is before the first, \"end\" that of the run",
-            shortened(name),
-            hint(name, names)
-        );
-        table.error("stage", message, report);
+        table.error("stage", unknown_name("[[stage]]", name, names), report);
         return;
     };
     if until == 0.0 && case.initial.is_none() && !unloaded {
-        table.error("stage", "nothing has loaded the ground at the start: give [initial], or \"end\"", report);
+        let message =
+            "E0634: there is no stress at the start that could cause failure. Add [initial], or use stage = \"end\".";
+        table.error("stage", message, report);
         return;
     }
     if let Some(number) = case.stages.iter().position(|stage| stage.strength_reduction.is_some()) {
-        table.error("stage", format!("stage.{number} divides the strength, too: leave one of them out"), report);
+        let message =
+            format!("E0635: the strength is already reduced by stage.{number}. Remove one of the two reductions.");
+        table.error("stage", message, report);
     }
     divisible(case, &[case.just_before(until)], table, report);
     rest(case, (table, unloaded), report);
     if !case.checks.is_empty() {
-        report.note("check", "none", "strength_reduction.stage: they are of the case as it is");
+        report.note("check", "none", "strength_reduction.stage: checks apply to the unreduced strength");
         case.checks.clear();
     }
     if unloaded {
         load_at_once(case, case.just_before(until), steps)
     } else {
         if steps > 0 && case.still_grows(until) {
-            let message = "a load still changes at the end of that stage, and would go on while the strength falls: let its \
-                           ramp or amplitude end before";
+            let message = "E0636: a load still changes at the end of this stage, and would change during the strength \
+                           reduction. End its `ramp` or `amplitude` earlier.";
             table.error("stage", message, report);
         }
         if steps > 0 && case.still_moves(until) {
-            let message = "a strip still moves at the end of that stage, and would go on while the strength falls: let its \
-                           path end before";
+            let message = "E0636: a footing or prescribed motion still moves at the end of this stage, and would move \
+                           during the strength reduction. End its path earlier.";
             table.error("stage", message, report);
         }
         reduce(case, (until, steps), factor)
@@ -98,7 +107,8 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
     let made: Vec<bool> = (0..case.materials.len()).map(|number| case.is_followed(number)).collect();
     let Some(flow) = &mut case.flow else {
         if table.word("drainage") == Some(Failure::Undrained) {
-            let message = "no water flows that could stay: give a material drainage = \"coupled\" or \"undrained\"";
+            let message = "E0637: the case has no flow of water, so its failure cannot be undrained. Remove \
+                           `drainage`, or set drainage = \"undrained\" in a material.";
             table.error("drainage", message, report);
         }
         return;
@@ -112,8 +122,8 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
     let changed =
         [("elastic", table.flag("elastic") == Some(true)), ("stiffness", table.number("stiffness") != Some(1.0))];
     for (key, _) in changed.into_iter().filter(|(_, changed)| *changed && !unloaded) {
-        let message =
-            "it would hold from the first step on, and what consolidates does so by its own law: leave it out";
+        let message = "E0638: the key would change the material from the first step on, and with it the \
+                       consolidation. Remove it, or set unloaded = true.";
         table.error(key, message, report);
     }
 }
@@ -327,7 +337,7 @@ mod tests {
         assert!(time == timed.analysis.end && (share[0] - 0.2).abs() < 1e-6, "it acts for one second: {share}");
         let level = timed.water.unwrap().table.table(0.0, 0.1).unwrap().0;
         assert!((level - 1.75).abs() < 1e-6, "{level}");
-        // What moves as told is held where it is then, beside ground as it is drawn at its first place.
+        // A prescribed motion stays where it is then; next to ground as it is drawn, at its first place.
         let way = "rigid=[{ name = \"wall\", polygon = [[5, 0], [6, 0], [6, 4]], path = [[1.0, 0.2, 0.0], [3.0, 0.4, 0.0]], \
                    rotation = [[4.0, 8.0]] }]";
         let wall = |set: &[&str]| case(&[&[way][..], set].concat()).rigid[0].clone();

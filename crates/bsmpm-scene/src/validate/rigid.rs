@@ -5,9 +5,8 @@ mod solid;
 
 use super::site::{AroundStrip, normal};
 use super::strip;
-use super::{MOST_SHOWN_FRICTION, load, place, shape};
+use super::{MOST_SHOWN_FRICTION, NO_INERTIA, load, place, shape};
 use crate::case::{Acting, Case, Initial, MotionPath, Rigid, RigidShape, Stage, Support};
-use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces;
@@ -36,7 +35,9 @@ pub(super) fn read_all(
     for record in root.records("rigid") {
         let Some(rigid) = read((record, geometry), around, factor, report) else { continue };
         if found.iter().any(|other| other.name == rigid.name) {
-            record.error("name", format!("there is a rigid body `{}` already", rigid.name), report);
+            let message =
+                format!("E0421: another rigid body is called `{}` as well. Give each a name of its own.", rigid.name);
+            record.error("name", message, report);
         }
         found.push(rigid);
     }
@@ -93,9 +94,8 @@ fn free(record: &Record, report: &mut Report<'_>) -> Option<[bool; 3]> {
     }
     for name in record.names("free")? {
         let Some(motion) = RigidMotion::of(name) else {
-            let words = || RigidMotion::WORDS.words();
-            let allowed: Vec<&str> = words().collect();
-            let message = format!("`{name}`{}; allowed: {}", hint(name, words()), allowed.join(", "));
+            let allowed: Vec<&str> = RigidMotion::WORDS.words().collect();
+            let message = format!("E0422: `{name}` is not a motion of a rigid body. Use {}.", allowed.join(", "));
             record.error("free", message, report);
             return None;
         };
@@ -118,7 +118,11 @@ fn rotation(record: &Record, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>>
     let rows: Vec<(f64, f64)> =
         load::increasing(record, "rotation", report)?.map(|row| (row[0], row[1].to_radians())).collect();
     if rows[0].0 == 0.0 && rows[0].1 != 0.0 {
-        record.error("rotation", "it starts at time 0 with the angle 0", report);
+        let message = format!(
+            "E0403: the rotation at t = 0 is {} degrees. A path begins at rest. Give zero there, or a row at a later time.",
+            rows[0].1.to_degrees()
+        );
+        record.error("rotation", message, report);
         return None;
     }
     Some(rows)
@@ -139,13 +143,13 @@ fn friction(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Op
     let given = record.number("friction_coefficient")?;
     let friction = factor.map_or(given, |factor| given / factor);
     if friction != given {
-        let reason = format!("strength_reduction.factor = {}", factor.unwrap_or(1.0));
+        let reason = format!("divided by strength_reduction.factor = {}", factor.unwrap_or(1.0));
         report.note(record.path_of("friction_coefficient"), format!("{friction}"), reason);
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
-            "{}: {friction}: shown to be right up to {MOST_SHOWN_FRICTION}; with more, steps may find no state that agrees \
-             with Coulomb's law, or one of several",
+            "W0409: {}: {friction} is above {MOST_SHOWN_FRICTION}, the largest verified coefficient. Steps may find no solution of \
+             Coulomb's law, or one of several. Use at most {MOST_SHOWN_FRICTION}.",
             record.path_of("friction_coefficient")
         ));
     }
@@ -157,27 +161,41 @@ fn moves_as_given(record: &Record, rigid: &Rigid, report: &mut Report<'_>) {
     let way = ["displacement", "velocity", "path"].into_iter().find(|key| record.gives(key)).unwrap_or("path");
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
         if rigid.free[axis] && rigid.path.rows.iter().any(|(_, moved)| moved[axis] != 0.0) {
-            record.error(way, format!("it moves along {name}, which is `free`"), report);
+            record.error(way, prescribed_and_free(&format!("motion along {name}")), report);
         }
         if !rigid.free[axis] && rigid.force[axis] != 0.0 {
             let key = if record.gives("force_path") { "force_path" } else { "force" };
-            record.error(key, format!("acts along {name}, which is not `free`"), report);
+            record.error(key, without_effect(&format!("motion along {name}"), name), report);
         }
         if !rigid.free[axis] && rigid.velocity[axis] != 0.0 {
-            record.error("start_velocity", format!("along {name}, which is not `free`"), report);
+            record.error("start_velocity", without_effect(&format!("motion along {name}"), name), report);
         }
     }
     if rigid.free[2] && !rigid.rotation.is_empty() {
-        record.error("rotation", "it is `free`", report);
+        record.error("rotation", prescribed_and_free("rotation"), report);
     }
     for (key, value) in [("moment", rigid.force[2]), ("start_spin", rigid.velocity[2])] {
         if !rigid.free[2] && value != 0.0 {
-            record.error(key, "its rotation is not `free`", report);
+            record.error(key, without_effect("rotation", "rotation"), report);
         }
     }
     if rigid.free.contains(&true) && record.gives("about") {
-        record.error("about", "a body that moves freely does so about its centre of mass", report);
+        let message =
+            "E0425: a body that moves freely rotates about its centre of mass, not about this point. Delete `about`.";
+        record.error("about", message, report);
     }
+}
+
+/// Says that a motion is prescribed and free.
+fn prescribed_and_free(motion: &str) -> String {
+    format!("E0423: the {motion} is prescribed here, and also listed in `free`. Delete one of them.")
+}
+
+/// Says that what acts on a motion, called `name` in `free`, has no effect on it.
+fn without_effect(motion: &str, name: &str) -> String {
+    format!(
+        "E0424: this has no effect, because the {motion} is not `free`. Add \"{name}\" to `free`, or delete this key."
+    )
 }
 
 /// What moves freely has mass in dynamics, and what has mass moves freely.
@@ -185,23 +203,29 @@ fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, repor
     let is_free = rigid.free.contains(&true);
     if !is_free {
         for key in ["mass", "density", "inertia"].into_iter().filter(|key| record.gives(key)) {
-            record.error(key, "has no meaning where no motion is `free`", report);
+            let message =
+                "E0426: this has no effect, because no motion of the body is `free`. Delete this key, or give `free`.";
+            record.error(key, message, report);
         }
     }
     let massless = rigid.mass[0] == 0.0 || rigid.free[2] && rigid.mass[1] == 0.0;
     if is_free && massless && regime == Some(Regime::Dynamic) {
-        record.error("free", "it has no mass: give `mass` or `density`", report);
+        let message = "E0427: in dynamic analysis a body that moves freely needs mass. Give `mass` or `density`.";
+        record.error("free", message, report);
     }
     if is_free && rigid.mass[0] == 0.0 && rigid.force == [0.0; 3] {
-        record.error("free", "nothing acts on it: give `mass`, `density`, `force` or `moment`", report);
+        let message = "E0428: the body is free to move, but has no weight and no load. Give `mass`, `density`, `force` or `moment`.";
+        record.error("free", message, report);
     }
     for key in ["ramp", "amplitude"].into_iter().filter(|key| record.gives(key) && rigid.force == [0.0; 3]) {
         let path = record.path_of(key);
-        report.warn(format!("{path}: there is no `force` or `moment` that would grow: it does nothing"));
+        report.warn(format!(
+            "W0410: {path}: this has no effect, because the body has no `force` or `moment`. Delete it, or give one of them."
+        ));
     }
     for key in ["start_velocity", "start_spin"] {
         if record.gives(key) && regime == Some(Regime::QuasiStatic) {
-            record.error(key, "nothing has a velocity in a quasi-static analysis", report);
+            record.error(key, NO_INERTIA, report);
         }
     }
 }
@@ -231,7 +255,8 @@ fn fine_enough(
     let most = fastest.fold(0.0, f64::max);
     if most > ADVANCE * cell {
         report.warn(format!(
-            "{}: it moves up to {:.2} cells in a step; shown to be right up to {ADVANCE}: give more steps",
+            "W0411: {}: the body moves up to {:.2} cells in a step (verified: up to {ADVANCE}). It may pass soil without \
+             pushing it. Increase analysis.steps, or reduce analysis.dt.",
             record.path_of("path"),
             most / cell
         ));
@@ -240,8 +265,8 @@ fn fine_enough(
     let axis = (geometry == Geometry::Axisymmetric).then_some(-about[0]);
     if let Some((corner, angle)) = sharpest(&outline, axis).filter(|(_, angle)| 2.0 * (0.5 * angle).sin() < 1.0) {
         report.warn(format!(
-            "{}: the corner at [{}, {}] has {:.0} degrees: soil is pushed right by corners of 60 and more; a sharper one \
-             acts as if rounded over a cell",
+            "W0412: {}: the corner at [{}, {}] has {:.0} degrees. Corners below 60 degrees act as if rounded over a cell. Use \
+             smaller cells, or a blunter corner.",
             record.path_of(shape::key(record)),
             corner[0] + about[0],
             corner[1] + about[1],
@@ -250,9 +275,8 @@ fn fine_enough(
     }
     if thickness < THICK * cell {
         report.warn(format!(
-            "{}: it is {thickness:.3e} m thick, {:.1} cells: points on its two sides share nodes, which it cannot part, so \
-             that it pulls (cases/results/scenes.md: a plate of one cell carries 11.8 c B, of two cells 4.05): give cells \
-             of at most {:.3e} m where soil is on both sides",
+            "W0413: {}: the body is {:.1} cells thick (at least {THICK}). Soil on its two sides is coupled and does not separate \
+             from it. Use cells of at most {:.3e} m if it has soil on both sides.",
             record.path_of(shape::key(record)),
             thickness / cell,
             thickness / THICK
@@ -314,27 +338,22 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (number, (rigid, record)) in case.rigid.iter().zip(root.records("rigid")).enumerate() {
         if rigid.velocity != [0.0; 3] && case.acts_since(Acting::Rigid(number), 0.0).is_none() {
             let key = if record.gives("start_velocity") { "start_velocity" } else { "start_spin" };
-            record.error(key, "a stage applies it later, at rest; let a `force` or gravity move it", report);
+            let message = "E0430: a stage adds this body later and at rest, so it has no velocity at the start. Let a `force` or \
+                           gravity move it.";
+            record.error(key, message, report);
         }
-        if case.initial == Some(Initial::Elastic) {
+        if case.settles || case.initial == Some(Initial::Elastic) {
             report.warn(format!(
-                "{}: the elastic equilibrium of [initial] gravity is one without rigid bodies; where they hold soil give k0, \
-                 or let gravity grow over a ramp",
-                record.path
-            ));
-        }
-        if case.settles {
-            report.warn(format!(
-                "{}: [initial] equilibrium is sought without rigid bodies: soil that leans on one finds none, or another; \
-                 give k0 without it, or let gravity grow over a ramp",
+                "W0414: {}: the equilibrium of [initial] is found without rigid bodies. Soil that they support moves at the start. \
+                 Use initial.k0 alone, or gravity.ramp without [initial].",
                 record.path
             ));
         }
         let absorbs = case.is_ever(Support::Absorbing) || case.is_ever(Support::FreeField);
         if absorbs && case.gravity.is_some() {
             report.warn(format!(
-                "{}: faces that absorb hold what [initial] has found, which has no rigid bodies: one that rests on the \
-                 ground, or holds it, lets it drift away",
+                "W0415: {}: absorbing boundaries carry the initial stresses only, which do not include rigid bodies. The ground \
+                 drifts under the weight of this one. Fix one boundary.",
                 record.path
             ));
         }
@@ -358,17 +377,20 @@ fn together(case: &Case, rigid: usize, body: usize) -> Option<Option<&Stage>> {
     times.into_iter().find(|(t, _)| both(*t)).map(|(_, stage)| stage)
 }
 
-/// What is told where a body is in a rigid one when they are there together first.
+/// What is said where a body is in a rigid one when they are there together first.
 fn inside(case: &Case, (rigid, body): (usize, usize), at: &str) -> String {
     let stage = together(case, rigid, body).flatten();
-    let (what, or) = match stage {
-        None => (format!("body.{body} is"), ""),
-        Some(stage) if stage.add.contains(&body) => (format!("a stage places body.{body}"), ""),
-        Some(Stage { at, .. }) => {
-            (format!("at t = {at}, when a stage applies it, body.{body} is"), ", or remove that body then")
+    let (when, or) = match stage {
+        None => ("at the start".to_owned(), ""),
+        Some(stage) if stage.add.contains(&body) => (format!("when a stage adds it at t = {}", stage.at), ""),
+        Some(stage) => {
+            (format!("when a stage adds the rigid body at t = {}", stage.at), ", or remove that body in this stage")
         }
     };
-    format!("{what} in it at [{at}], by more than {OVERLAP} cells; subtract it from that body{or}")
+    format!(
+        "E0431: body.{body} overlaps this rigid body at [{at}] by more than {OVERLAP} cells {when}. Subtract the shape of the \
+         rigid body from body.{body}{or}."
+    )
 }
 
 /// What stages place at a rigid body, or where one is that they apply, may lie nearer than it reaches.
@@ -384,13 +406,11 @@ fn joined(case: &Case, (number, rigid): (usize, &Rigid), record: &Record, report
     let mut joined = (0..case.bodies.len()).filter_map(joins);
     let found = joined.find(|(body, stage)| is_near(*body, moves && stage.add.contains(body)));
     let Some((body, stage)) = found else { return };
-    let what = match stage.add.contains(&body) {
-        true => format!("a stage places body.{body} at it, or where it may be then: points that"),
-        false => format!("a stage applies it at body.{body}: points that have moved into it by then, or that"),
-    };
+    let added =
+        if stage.add.contains(&body) { format!("body.{body} next to it") } else { format!("it next to body.{body}") };
     report.warn(format!(
-        "{}: {what} lie nearer than they reach, up to half a spacing, are pushed off it at once, and are strained by that; \
-         leave that gap",
+        "W0416: {}: a stage adds {added}. Material points within half a spacing are pushed off the rigid body in one step, \
+         which strains them. Leave a gap of half a spacing.",
         record.path
     ));
 }

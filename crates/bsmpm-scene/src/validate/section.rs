@@ -108,9 +108,8 @@ pub(super) fn warn_of_neighbours(case: &Case, root: &Record, report: &mut Report
             if cut.span(&places).is_some_and(|span| cut.misses(case, span)) {
                 let cells = cut.reach / cut.cell;
                 report.warn(format!(
-                    "{}: {name} acts within {cells} cells of the section at the start, and how much of its force there is in \
-                     the section's is a matter of the grid: off by half of it at the section, by up to 9 % a cell away, by \
-                     .1 % from {cells} cells on; put the section as far away, or take smaller cells",
+                    "W0428: {}: `{name}` acts within {cells} cells of the section. The section forces contain an arbitrary part of \
+                     its force. Move the section {cells} cells away, or use smaller cells.",
                     record.path
                 ));
             }

@@ -90,7 +90,11 @@ impl<const D: usize> BeyondSymmetry<D> {
     fn note(&self, body: &Record, geometry: Geometry, report: &mut Report<'_>) {
         let sides: Vec<String> = self.faces.iter().map(|face| face.side(geometry).to_string()).collect();
         let value = format!("cut at {}", sides.join(", "));
-        report.note(body.path_of(key(body)), value, "a face with a roller is a plane of symmetry of the body");
+        report.note(
+            body.path_of(key(body)),
+            value,
+            "the roller there is a plane of symmetry of the body, and the half beyond it is left out",
+        );
     }
 }
 
@@ -157,7 +161,11 @@ pub(super) fn rigid(record: &Record, report: &mut Report<'_>) -> Option<RigidSha
             RigidShape::Polygon(corners)
         }
         BodyShape::Box { .. } => {
-            record.error("box", "of a solid; here a polygon", report);
+            record.error(
+                "box",
+                "E0207: a rigid box is available in 3-D only. Use `polygon`, or geometry = \"3d\".",
+                report,
+            );
             return None;
         }
     })
@@ -174,10 +182,18 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     let shape = record.record("box")?;
     let [lower, upper] = [shape.vector("lower")?, shape.vector("upper")?].map(|[x, y, _]| [x, y]);
     if lower[0] >= upper[0] || lower[1] >= upper[1] {
-        shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
+        shape.error("upper", empty_box(&lower, &upper), report);
         return None;
     }
     Some(BodyShape::Box { lower, upper })
+}
+
+/// Of a box without extent along some axis.
+fn empty_box(lower: &[f64], upper: &[f64]) -> String {
+    format!(
+        "E0203: the corner {upper:?} is not above lower = {lower:?} along each axis, so the box is empty. Exchange or \
+         correct the corners."
+    )
 }
 
 fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
@@ -188,7 +204,11 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
         corners.pop();
     }
     if corners.len() > region::MOST_EDGES {
-        let message = format!("{} corners; at most {} are possible", corners.len(), region::MOST_EDGES);
+        let message = format!(
+            "E0216: the polygon has {} corners (at most {}). Use fewer corners.",
+            corners.len(),
+            region::MOST_EDGES
+        );
         record.error("polygon", message, report);
         return None;
     }
@@ -196,19 +216,23 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     let row = |k: usize| rows[k].origin;
     let (origin, message): (Origin, String) = match fault {
         PolygonFault::TooFew => {
-            (record.place("polygon"), format!("{} corners; a polygon has three at least", corners.len()))
+            let message = format!("E0222: the polygon has {} corners (at least 3). Add corners.", corners.len());
+            (record.place("polygon"), message)
         }
-        PolygonFault::Repeated(last, 0) => {
-            (row(last), format!("the last corner {:?} repeats the first; a polygon closes by itself", corners[last]))
+        PolygonFault::Repeated(one, other) => {
+            let message =
+                format!("E0223: the polygon has the corner {:?} twice in a row. Delete one of them.", corners[one]);
+            (row(one.max(other)), message)
         }
-        PolygonFault::Repeated(_, k) => {
-            (row(k), format!("corner {k}, {:?}, repeats the one before (from 0)", corners[k]))
+        PolygonFault::Flat => {
+            let message =
+                "E0222: all corners of the polygon lie on one line, so its area is zero. Correct the corners.";
+            (record.place("polygon"), message.to_owned())
         }
-        PolygonFault::Flat => (record.place("polygon"), "all corners lie on a line: the area is zero".to_owned()),
         PolygonFault::Crossing(i, j) => {
             let edge = |k: usize| format!("{:?} to {:?}", corners[k], corners[(k + 1) % corners.len()]);
             let message = format!(
-                "E0203: the edge {} crosses or touches the edge {}. List the corners in order around the body.",
+                "E0223: the edge from {} crosses or touches the edge from {}. Correct the corners or their order.",
                 edge(j),
                 edge(i)
             );
@@ -245,16 +269,12 @@ fn inside(
             let outside = |(k, corner): (usize, &[f64; 2])| Some((k, place::beyond(grid, *corner)?));
             if let Some((k, message)) = corners.iter().enumerate().find_map(outside) {
                 let origin = body.rows("polygon").map_or(body.place("polygon"), |rows| rows[k].origin);
-                report.error(
-                    origin,
-                    &body.path_of("polygon"),
-                    format!("E0204: corner {k} (from 0): {message}. Move the corner, or enlarge the grid."),
-                );
+                report.error(origin, &body.path_of("polygon"), message);
             }
         }
         BodyShape::Circle { .. } => {
-            let message = place::beyond(grid, lower).or(place::beyond(grid, upper)).unwrap_or_default();
-            body.error("circle", message + "; `subtract` a box from what lies beyond", report);
+            let message = place::beyond(grid, lower).or(place::beyond(grid, upper));
+            message.into_iter().for_each(|message| body.error("circle", message, report));
         }
     }
     None

@@ -32,16 +32,17 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
         ("sphere", countable(2.0 * TAU * radius * radius, spacing).map(part))
     } else {
         let all = given(record, report)?;
-        let wrong = all.iter().flatten().find_map(|corner| beyond(grid, *corner)).map_or(Ok(()), Err);
+        let wrong = all.iter().flatten().find_map(|corner| beyond(grid, *corner));
+        let wrong = wrong.map_or(Ok(()), |outside| Err(outside.into()));
         let sound = wrong.and_then(|()| in_one_piece(&all));
         let sound = sound.and_then(|()| countable(all.iter().map(area).sum(), spacing));
         ("surface", sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>()))
     };
     let at_bodies = |all: Vec<Triangle>| match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
-        Some(at) => Err(format!(
-            "E0401: no body is at {at:?} at the start. Move it onto a body: half the spacing of material points away at most."
-        )),
-        None if all.is_empty() => Err("no part of it is inside the grid".into()),
+        Some(at) => Err(format!("E0233: no body lies at {at:.3?} at the start. Move the surface to that of a body.")),
+        None if all.is_empty() => {
+            Err("E0201: no part of the sphere is inside the grid. Move it into the grid, or enlarge the grid.".into())
+        }
         None => Ok(all),
     };
     found.and_then(at_bodies).map_err(|message| record.consequence(key, message, &["body"], report)).ok().map(Arc::from)
@@ -50,7 +51,12 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
 /// Whether an area, m², is not too large for the spacing of points, m.
 fn countable(area: f64, spacing: f64) -> Result<(), String> {
     let squares = area / spacing.powi(2);
-    let message = || format!("it has {squares:.0} squares of the spacing of points; allowed: up to {LARGEST}");
+    let message = || {
+        format!(
+            "E0216: the loaded surface covers {squares:.0} squares of the point spacing (at most {LARGEST}). Use \
+             larger cells, or fewer points_per_cell."
+        )
+    };
     if squares > LARGEST { Err(message()) } else { Ok(()) }
 }
 
@@ -62,7 +68,7 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Vec<Triangle>> {
     let rows = table.rows("triangles")?.iter().map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
     let all: Vec<Triangle> = rows.filter(|triangle| normal_of(triangle) != [0.0; 3]).collect();
     if all.is_empty() {
-        table.error("triangles", "there is none that has an area", report);
+        table.error("triangles", "E0227: all triangles have zero area. Check the file and `scale`.", report);
         return None;
     }
     Some(all)
@@ -129,13 +135,17 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
     for sides in edges_of(all).values() {
         let [from, to] = sides[0].ends;
         if sides.len() > 2 {
-            return Err(format!("{} triangles meet at the edge from {from:?} to {to:?}; allowed: two", sides.len()));
+            return Err(format!(
+                "E0227: {} triangles share the edge from {from:?} to {to:?} (at most 2). Repair the surface with a \
+                 mesh tool.",
+                sides.len()
+            ));
         }
         if let [one, other] = &sides[..] {
             if one.upwards == other.upwards {
                 return Err(format!(
-                    "the triangles at the edge from {from:?} to {to:?} do not turn alike; make normals consistent with a \
-                     mesh tool"
+                    "E0227: the normals of the triangles at the edge from {from:?} to {to:?} are inconsistent. Repair \
+                     the surface with a mesh tool."
                 ));
             }
             let [one, other] = [one.triangle, other.triangle].map(|of| root(&mut piece, of));
@@ -145,8 +155,8 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
     match (0..all.len()).filter(|of| piece[*of] == *of).count() {
         1 => Ok(()),
         pieces => Err(format!(
-            "it is in {pieces} pieces that have no edge in common: weld its corners with a mesh tool, or give each a \
-             traction of its own"
+            "E0227: the surface consists of {pieces} pieces without a common edge. Weld its vertices with a mesh tool, \
+             or give each piece its own [[traction]]."
         )),
     }
 }
@@ -231,12 +241,12 @@ mod tests {
     }
 
     #[test]
-    fn pieces_and_sides_of_triangles_are_told() {
+    fn pieces_and_sides_of_triangles_are_reported() {
         let [o, x, y, z] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         assert_eq!(in_one_piece(&[[o, x, y], [o, y, z]]), Ok(()));
         let says = |all: &[Triangle]| in_one_piece(all).unwrap_err();
-        assert!(says(&[[o, x, y], [o, z, y]]).contains("do not turn alike"));
-        assert!(says(&[[o, x, y], [o, y, z], [y, o, [1.0; 3]]]).contains("3 triangles meet"));
+        assert!(says(&[[o, x, y], [o, z, y]]).contains("are inconsistent"));
+        assert!(says(&[[o, x, y], [o, y, z], [y, o, [1.0; 3]]]).contains("3 triangles share the edge"));
         assert!(says(&[[o, x, y], [[5.0; 3], z, [6.0, 5.0, 5.0]]]).contains("2 pieces"));
     }
 }

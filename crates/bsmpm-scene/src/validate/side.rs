@@ -60,10 +60,12 @@ pub(super) fn of_pressures(case: &mut Case, root: &Record, report: &mut Report<'
         let sides: Vec<(f64, Option<f64>)> = acting.map(|t| (t, at(t))).collect();
         let first = sides.first().and_then(|(_, side)| *side);
         if let Some((t, _)) = sides.iter().find(|(_, side)| side.is_none() || *side != first) {
-            let when = if *t > 0.0 { format!("at t = {t}, when it acts, ") } else { String::new() };
-            let told = "bodies lie on both sides of it, or on none: a pressure acts on a free surface";
             let key = if record.gives("pressure_path") { "pressure_path" } else { "pressure" };
-            record.error(key, format!("{when}{told}"), report);
+            let message = format!(
+                "E0252: at t = {t} bodies lie on both sides of the loaded surface, or on neither. The direction of the \
+                 pressure is unknown. Load a free surface."
+            );
+            record.error(key, message, report);
         }
         case.tractions[number].push = Push::Pressure { profile, side: first.unwrap_or_default() };
     }

@@ -24,7 +24,11 @@ pub(super) struct AroundStrip<'a> {
 pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
     let (from, to) = (record.pair("from")?, record.pair("to")?);
     if from == to {
-        record.error("to", format!("{to:?} is `from` too: the length is zero"), report);
+        record.error(
+            "to",
+            "E0232: `from` and `to` are the same place, so the length is zero. Move one of them.",
+            report,
+        );
         return None;
     }
     let grid = around.grid?;
@@ -43,9 +47,8 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
     if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
-        let message = format!(
-            "E0401: no body is at {from:?} to {to:?} at the start. Move it onto a body: half the spacing of material points away at most."
-        );
+        let message =
+            format!("E0233: no body lies at {from:.3?} to {to:.3?} at the start. Move it to the surface of a body.");
         record.consequence(key, message, &["body"], report);
     }
 }
@@ -96,7 +99,11 @@ pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -
         let (lower, upper) = (grid.lower(), grid.upper());
         let inside = |axis: usize| lower[axis] <= plate.upper[axis] && plate.lower[axis] <= upper[axis];
         if !(0..3).all(inside) || plate.area([lower, upper]) == 0.0 {
-            record.error("disc", "no part of it is inside the grid", report);
+            record.error(
+                "disc",
+                "E0201: no part of the disc is inside the grid. Move it into the grid, or enlarge the grid.",
+                report,
+            );
             return None;
         }
         return Some(plate);
@@ -105,8 +112,10 @@ pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -
     let (lower, upper) = (table.vector("lower")?, table.vector("upper")?);
     let flat = (0..3).filter(|&axis| lower[axis] == upper[axis]).count();
     if flat != 1 || (0..3).any(|axis| lower[axis] > upper[axis]) {
-        let message =
-            format!("{lower:?} to {upper:?} is no rectangle; allowed: alike along one axis, more along the others");
+        let message = format!(
+            "E0234: {lower:?} and {upper:?} are no corners of a rectangle. Make them equal along one axis, and upper > \
+                     lower along the others."
+        );
         record.error("rectangle", message, report);
         return None;
     }
@@ -132,7 +141,7 @@ pub(super) fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report
     let (side, face) = (record.word::<Side>("face")?, face(record, around.grid?, report)?);
     let support = around.boundary?[face.axis][usize::from(face.upper)];
     if support != Support::Free {
-        let message = format!("[boundary] holds \"{side}\" too; leave it free there");
+        let message = format!("E0236: [boundary] supports the face \"{side}\", too. Set boundary.{side} = \"free\".");
         record.error("face", message, report);
         return None;
     }

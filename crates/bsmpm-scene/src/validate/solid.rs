@@ -16,7 +16,7 @@ const QUANTITIES: &[Measurement] = &[
     Measurement::PressureNoise,
 ];
 
-/// Unknowns beyond which a factor is told to be large: its fronts are planes of nodes.
+/// Unknowns beyond which there is a warning of a large factor: its fronts are planes of nodes.
 const MANY: u64 = 30_000;
 
 /// Errors about keys that the case's geometry has not.
@@ -27,30 +27,33 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     }
     for drain in root.records("drain").iter().chain(root.records("inflow")) {
         for key in ["from", "to", "circle", "surface"].into_iter().filter(|key| drain.gives(key)) {
-            let message = "not available in 3-D: name a face of the grid, a rectangle = { lower, upper } or a disc";
+            let message = "E0225: this key belongs to 2-D cases, and this one is 3-D. Use face, rectangle = { lower, \
+                           upper } or disc.";
             drain.error(key, message, report);
         }
     }
     for traction in root.records("traction") {
         for key in ["from", "to", "circle"].into_iter().filter(|key| traction.gives(key)) {
-            traction.error(
-                key,
-                "is in a plane; a solid is loaded on a rectangle = { lower, upper }, a disc, a sphere or a surface",
-                report,
-            );
+            let message = "E0225: this key belongs to 2-D cases, and this one is 3-D. Use rectangle = { lower, upper }, \
+                           disc, sphere or surface.";
+            traction.error(key, message, report);
         }
     }
     for strip in root.records("footing").iter().chain(root.records("prescribed")) {
         for key in ["from", "to"].into_iter().filter(|key| strip.gives(key)) {
-            strip.error(key, "is in a plane; a solid has plates: rectangle = { lower, upper }, or disc", report);
+            let message =
+                "E0225: this key belongs to 2-D cases, and this one is 3-D. Use rectangle = { lower, upper } or disc.";
+            strip.error(key, message, report);
         }
     }
     for history in root.records("history") {
         if let Some(quantity) = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of)) {
-            history.error("quantity", format!("\"{quantity}\" is not available in 3-D yet: use frames"), report);
+            let message =
+                format!("E0226: the quantity \"{quantity}\" is not available in 3-D. Evaluate it from the frames.");
+            history.error("quantity", message, report);
         }
         if history.gives("at_x") {
-            history.error("at_x", "not available in 3-D yet: leave it out", report);
+            history.error("at_x", "E0226: this key is not available in 3-D. Delete it.", report);
         }
     }
 }
@@ -61,24 +64,31 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
     let strips = strips.chain(root.records("drain")).chain(root.records("inflow"));
     for flat in root.records("traction").iter().chain(strips) {
         for key in ["rectangle", "disc"].into_iter().filter(|key| flat.gives(key)) {
-            flat.error(key, "is in space: geometry = \"3d\" has it; here from and to", report);
+            flat.error(key, "E0207: this key is available in 3-D only. Use from and to, or geometry = \"3d\".", report);
         }
     }
     for traction in root.records("traction") {
         for key in ["sphere", "surface"].into_iter().filter(|key| traction.gives(key)) {
-            traction.error(key, "is in space: geometry = \"3d\" has it; here from and to, or circle", report);
+            traction.error(
+                key,
+                "E0207: this key is available in 3-D only. Use from and to, or circle, or geometry = \"3d\".",
+                report,
+            );
         }
     }
     let stages = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));
     for boundary in root.record("boundary").into_iter().chain(stages) {
         for side in [Side::Front, Side::Back].into_iter().filter(|side| boundary.gives(side.word())) {
-            boundary.error(side.word(), "a plane has no such face: geometry = \"3d\" has", report);
+            let message = "E0207: a 2-D grid has no such face. Delete it, or use geometry = \"3d\".";
+            boundary.error(side.word(), message, report);
         }
     }
     let shapes = root.records("body").iter().flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
     for shape in shapes.chain(root.records("rigid")) {
         for key in ["extrude", "sphere", "revolve", "terrain", "surface"].into_iter().filter(|key| shape.gives(key)) {
-            shape.error(key, "is a shape in space: geometry = \"3d\" has it", report);
+            let message =
+                "E0207: this shape is available in 3-D only. Use box, polygon or circle, or geometry = \"3d\".";
+            shape.error(key, message, report);
         }
     }
 }
@@ -89,16 +99,16 @@ fn faces(all: &[FaceSupport], boundary: &Record, report: &mut Report<'_>) {
     for of in all.iter().filter(|of| boundary.gives(side(of).word())) {
         if !matches!(of.support, Support::Fixed | Support::Roller | Support::Free | Support::Contact | Support::Outflow)
         {
-            let message =
-                "not available in 3-D yet: \"fixed\", \"roller\", \"free\", \"outflow\", \"contact\" or { friction }";
+            let message = "E0226: this support is not available in 3-D. Use fixed, roller, free, outflow or contact, \
+                           or { friction_coefficient = ... }.";
             boundary.error(side(of).word(), message, report);
         }
     }
-    let rubbing = || all.iter().filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0));
-    let meets = |of: &&FaceSupport| rubbing().any(|other| other.face.axis != of.face.axis);
-    if let Some(of) = rubbing().filter(|of| boundary.gives(side(of).word())).rfind(meets) {
-        let message = "friction on two faces that share an edge is not available in 3-D yet: one of them may rub, and \
-                       the other be \"contact\" or \"roller\"";
+    let with_friction = || all.iter().filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0));
+    let meets = |of: &&FaceSupport| with_friction().any(|other| other.face.axis != of.face.axis);
+    if let Some(of) = with_friction().filter(|of| boundary.gives(side(of).word())).rfind(meets) {
+        let message = "E0226: friction on two faces that share an edge is not available in 3-D. Make one of them \
+                       \"contact\" or \"roller\".";
         boundary.error(side(of).word(), message, report);
     }
 }
@@ -117,7 +127,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     if matches!(case.stabilisation, Stabilisation::SubgridFBar | Stabilisation::ModifiedFBar) {
         let key = root.record("stabilisation");
         key.into_iter().for_each(|of| {
-            of.error("method", "not shown to be right in 3-D yet: \"consistent-f-bar\" or \"f-bar\"", report);
+            let message = "E0226: this method is not available in 3-D. Use \"consistent-f-bar\" or \"f-bar\".";
+            of.error("method", message, report);
         });
     }
 }
@@ -129,9 +140,8 @@ impl Case {
         let is_factored = self.geometry == Geometry::Solid && self.solver.linear_on(ranks).factor.is_some();
         let warning = || {
             format!(
-                "solver.linear: a factor of up to {} unknowns in space, about {:.1} GB in all, and every doubling of the points \
-                 takes 2.5 times the memory; with poisson <= 0.45, at rest where soil yields <= 0.4, linear = \
-                 \"incomplete-cholesky\" takes a fraction, and else on one rank \"spline-multigrid\" about half",
+                "W0235: solver.linear: factorising {} unknowns in 3-D takes about {:.1} GB of memory. With poisson <= \
+                 0.4 use \"incomplete-cholesky\", otherwise on one rank \"spline-multigrid\".",
                 estimate.active,
                 estimate.bytes as f64 / 1e9
             )

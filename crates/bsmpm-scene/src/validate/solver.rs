@@ -54,14 +54,14 @@ fn weights(
         Some(Quadrature::Fitted) => {}
     }
     if order? == 3 {
-        let message = "\"fitted\" is for linear and quadratic grids: cubic ones, which integrate well by themselves, find no \
-                       equilibrium with it in a bar compressed to half; use \"points\"";
+        let message =
+            "E0602: the quadrature \"fitted\" does not converge with cubic splines. Use quadrature = \"points\".";
         solver.error("quadrature", message, report);
         return None;
     }
     if regime? == Regime::Dynamic {
-        let message = "\"fitted\" is for quasi-static analysis: weights that change from step to step change the energy of \
-                       what moves; use \"points\"";
+        let message = "E0602: the quadrature \"fitted\" changes the energy of moving material, so it is not available \
+                       in dynamics. Use quadrature = \"points\".";
         solver.error("quadrature", message, report);
         return None;
     }
@@ -70,7 +70,7 @@ fn weights(
 
 /// Fits the points' weights where materials of unlike stiffness meet on a C0 line, unless the case says otherwise:
 /// material that crosses the line has wrong stresses without. Not in dynamics, on cubic grids and where water flows. At
-/// C0 lines at the ends of strips it gains nothing, and limit loads are .6 % higher.
+/// C0 lines at the ends of strips it gains nothing, and limit loads are 0.6 % higher.
 pub(super) fn fit_weights(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let is_given = root.record("solver").is_none_or(|solver| solver.gives("quadrature"));
     let may_fit = case.analysis.regime == Regime::QuasiStatic && case.grid.order < 3 && case.flow.is_none();
@@ -78,7 +78,7 @@ pub(super) fn fit_weights(case: &mut Case, root: &Record, report: &mut Report<'_
         return;
     }
     case.solver.quadrature = Quadrature::Fitted;
-    let reason = "material may cross the grid line on which others meet it, and its stress would be wrong there";
+    let reason = "stresses stay accurate where material crosses a grid line between materials of different stiffness";
     report.note("solver.quadrature", Quadrature::Fitted.word(), reason);
 }
 
@@ -95,18 +95,17 @@ fn extended_splines(
     let given = solver.word_if_given(EXTENSION)?;
     let refusal = match (regime?, order?) {
         (Regime::Dynamic, _) => {
-            "\"linear\" is for quasi-static analysis. In dynamics it throws layers thinner than a cell ahead of the \
-             material behind them. Use \"off\"."
+            "E0603: extension = \"linear\" is not available in dynamics, where it accelerates layers thinner than a \
+             cell. Use extension = \"off\"."
         }
         (Regime::QuasiStatic, 3) => {
-            "\"linear\" is for linear and quadratic splines. The edge of cubic ones creeps with it as without it, in \
-             five times the iterations. Use \"off\", or grid.degree = \"quadratic\"."
+            "E0603: extension = \"linear\" is not available with cubic splines, where it does not improve the result. \
+             Use extension = \"off\"."
         }
         (Regime::QuasiStatic, _) => {
             let extended = given.unwrap_or(ExtendedSplines::Linear);
             if given.is_none() {
-                let reason =
-                    "functions of nearly empty cells have no stiffness of their own in a quasi-static analysis";
+                let reason = "nearly empty cells have too little stiffness in a quasi-static analysis";
                 report.note("solver.extension", extended.word(), reason);
             }
             return Some(extended);
@@ -125,9 +124,9 @@ fn background(solver: &Record, regime: Option<Regime>, report: &mut Report<'_>) 
         return solver.number("background");
     }
     let (background, reason) = match regime? {
-        Regime::Dynamic => (0.0, "inertia holds nearly empty cells in a dynamic analysis"),
+        Regime::Dynamic => (0.0, "nearly empty cells have inertia in a dynamic analysis"),
         Regime::QuasiStatic => {
-            (1e-4, "functions that extended splines leave untied have no other stiffness in a quasi-static analysis")
+            (1e-4, "nearly empty cells that extended splines do not constrain need a small stiffness")
         }
     };
     report.note("solver.background", format!("{background:?}"), reason);
@@ -143,8 +142,8 @@ pub(super) fn warn_of_background(case: &Case, report: &mut Report<'_>) {
     let bears_loads = !case.has_prescribed_motion() || case.strength_reduction.is_some();
     if is_at_rest && bears_loads && case.solver.background > SOFT {
         report.warn(format!(
-            "solver.background: {:e} is above {SOFT:e}. Under dead load it makes the ground too strong: with 1e-3, factors of \
-             safety are 2 % too high. Delete solver.background.",
+            "W0602: solver.background: the artificial stiffness of empty cells ({:e}) is above {SOFT:e} and makes the \
+             ground too strong. Remove `background`.",
             case.solver.background
         ));
     }
@@ -152,7 +151,7 @@ pub(super) fn warn_of_background(case: &Case, report: &mut Report<'_>) {
 
 /// Unknowns from which multigrid is taken by itself: a factor of so many has about 40 GB.
 const MANY: u128 = 10_000_000;
-/// Poisson's ratio up to which it is: multigrid's iterations grow from 22 at .3 to 124 at .495 and 900 at .4999.
+/// Poisson's ratio up to which it is: multigrid's iterations grow from 22 at 0.3 to 124 at 0.495 and 900 at 0.4999.
 const COMPRESSIBLE: f64 = 0.45;
 
 /// What the linear solver is chosen by.
@@ -168,12 +167,12 @@ impl Size {
     fn against_multigrid(self) -> Option<String> {
         let up_to = format!("up to {} unknowns", self.unknowns);
         if self.unknowns <= MANY {
-            return Some(format!("{up_to}: below {MANY} a factor kept for a step's iterations costs least"));
+            return Some(format!("{up_to}: below {MANY} a direct solver is fastest"));
         }
         if self.poisson > COMPRESSIBLE {
-            return Some(format!("{up_to}, but multigrid iterates for long above a Poisson's ratio of {COMPRESSIBLE}"));
+            return Some(format!("{up_to}, but multigrid converges slowly above a Poisson's ratio of {COMPRESSIBLE}"));
         }
-        self.reproducible.then(|| format!("{up_to}, but multigrid need not repeat to the bit: solver.reproducible"))
+        self.reproducible.then(|| format!("{up_to}, but multigrid is not bitwise reproducible (solver.reproducible)"))
     }
 }
 
@@ -198,22 +197,23 @@ const MANY_IN_SPACE: u64 = 150_000;
 /// The same of nearly incompressible material, from which multigrid over the grid's splines is taken (same place).
 const FEW_INCOMPRESSIBLE: u64 = 100_000;
 
-/// Takes what applies in a solid of many unknowns unless the case says it, and refuses what needs solutions of a
-/// solver that has none.
+/// Chooses the linear solver of a 3-D case with many unknowns unless the case gives it, and refuses iterative ones
+/// where they are not available.
 pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let Some(solver) = root.record("solver") else { return };
     let condenses = case.rigid.iter().any(|rigid| rigid.free.contains(&true));
     let is_own = case.solver.linear.pc == Pc::SplineMultigrid;
     if (is_own || case.solver.linear.applications > 0) && (case.flow.is_some() || condenses) {
-        let what = if condenses { "rigid bodies that move freely" } else { "water that flows" };
-        let message =
-            format!("a preconditioner in place of solutions was not shown to be right with {what}: \"direct\"");
+        let what = if condenses { "freely moving rigid bodies" } else { "flow of water" };
+        let message = format!("E0604: this linear solver is not available with {what}. Use linear = \"direct\".");
         solver.error("linear", message, report);
         return;
     }
     let (dims, active) = (case.grid.dims(), case.estimate(1).active);
     if dims < 3 && is_own {
-        solver.error("linear", "\"spline-multigrid\" was shown to be right for solids only: \"direct\"", report);
+        let message =
+            "E0604: the linear solver \"spline-multigrid\" is available in 3-D only. Use linear = \"direct\".";
+        solver.error("linear", message, report);
         return;
     }
     // Near failure the preconditioner alone may give up before the ground does, and whether it does is the answer.
@@ -221,13 +221,11 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     if dims < 3 || solver.gives("linear") {
         return;
     }
-    let so_many = format!("up to {active} unknowns in space");
+    let so_many = format!("up to {active} unknowns in 3-D");
     let by_factor = match () {
-        () if active <= FEW_IN_SPACE => Some(format!(", {FEW_IN_SPACE} at most: a factor costs least")),
-        () if fails => {
-            Some(": near failure a preconditioner in place of solutions may give up before the ground does".into())
-        }
-        () if case.flow.is_some() || condenses => Some(": what else applies was not shown to be right here".into()),
+        () if active <= FEW_IN_SPACE => Some(format!(": up to {FEW_IN_SPACE} a direct solver is fastest")),
+        () if fails => Some(": near failure an iterative solver may fail before the ground does".into()),
+        () if case.flow.is_some() || condenses => Some(": no iterative solver is available for this case".into()),
         () => None,
     };
     if let Some(reason) = by_factor {
@@ -237,14 +235,14 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         return;
     }
     if case.is_nearly_incompressible() {
-        let what = "of nearly incompressible material, or of soil that flows at rest with poisson above 0.4";
+        let what = "with nearly incompressible material";
         if case.solver.linear.factor.is_some() && active <= FEW_INCOMPRESSIBLE {
-            chosen(LinearSolver::Direct, format!("{so_many} {what}: a factor takes less time than multigrid"), report);
+            chosen(LinearSolver::Direct, format!("{so_many} {what}: a direct solver is faster than multigrid"), report);
         } else if case.solver.linear.factor.is_some() {
             case.solver.linear = Linear { by_size: true, ..in_a_word(LinearSolver::SplineMultigrid) };
             let reason = format!(
-                "{so_many} {what}, more than {FEW_INCOMPRESSIBLE}: a factor takes longer and more memory, what other \
-                 preconditioners leave in place of solutions takes several times as long; on several ranks a factor"
+                "{so_many} {what}: above {FEW_INCOMPRESSIBLE} faster than a direct solver; several ranks use the direct \
+                 one"
             );
             chosen(LinearSolver::SplineMultigrid, reason, report);
         }
@@ -255,13 +253,10 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     case.solver.linear = Linear { by_size: true, ..in_a_word(word) };
     let reason = match many {
         true => format!(
-            "{so_many}, more than {MANY_IN_SPACE}: what one application of an incomplete factor leaves grows with them; on \
-             several ranks, where this need not repeat to the bit, only with solver.reproducible = false"
+            "{so_many}: above {MANY_IN_SPACE} faster than other solvers; on several ranks only with \
+             solver.reproducible = false, as it is not bitwise reproducible there"
         ),
-        false => format!(
-            "{so_many}, more than {FEW_IN_SPACE}: an application of an incomplete factor in place of a solution; a factor \
-             takes longer than the iterations that it saves, and 2.5 times the memory with every doubling"
-        ),
+        false => format!("{so_many}: above {FEW_IN_SPACE} faster than a direct solver, with less memory"),
     };
     chosen(word, reason, report);
 }
@@ -290,14 +285,19 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
     let pc = asked.pc.unwrap_or(if open { Pc::Gamg } else { Pc::Cholesky });
     let ksp = asked.ksp.unwrap_or(if pc.solves() { Ksp::Preonly } else { Ksp::Cg });
     if ksp == Ksp::Preonly && !pc.solves() {
-        let message = format!("\"{ksp}\" solves with a direct pc (cholesky, lu, redundant) only, not with \"{pc}\"");
+        let message = format!(
+            "E0605: ksp = \"{ksp}\" needs a direct solver, and pc = \"{pc}\" is iterative. Use pc = \"cholesky\", \
+             \"lu\" or \"redundant\"."
+        );
         linear.error("ksp", message, report);
         return None;
     }
     let dissects = ksp == Ksp::Preonly && pc == Pc::Cholesky;
     if asked.factor == Some(Factor::Dissection) && !dissects {
-        let message =
-            format!("\"dissection\" is a \"preonly\" \"cholesky\", neither \"{ksp}\" nor \"{pc}\" can use it");
+        let message = format!(
+            "E0605: factor = \"dissection\" is not available with ksp = \"{ksp}\" and pc = \"{pc}\". Use ksp = \
+             \"preonly\" and pc = \"cholesky\"."
+        );
         linear.error("factor", message, report);
         return None;
     }
@@ -306,7 +306,10 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
         (true, None) => Some(if dissects { Factor::Dissection } else { Factor::Mumps }),
         (false, Some(factor)) => {
             let path = linear.path_of("factor");
-            report.warn(format!("{path}: \"{factor}\" is not used: pc = \"{pc}\" is no direct solver"));
+            report.warn(format!(
+                "W0603: {path}: the factorisation \"{factor}\" is not used, because pc = \"{pc}\" is an iterative \
+                 method. Remove `factor`."
+            ));
             None
         }
         (false, None) => None,
@@ -320,8 +323,8 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
 fn explain(linear: &Record, (asked, found): (&PetscNames, &Linear), size: Size, report: &mut Report<'_>) {
     if asked.pc.is_none() {
         let many =
-            || format!("up to {} unknowns, more than {MANY}: a factor costs more than iterations", size.unknowns);
-        let wanted = || "\"preonly\" or a factor is asked for".to_owned();
+            || format!("up to {} unknowns: above {MANY} multigrid is faster than a direct solver", size.unknowns);
+        let wanted = || "`ksp` or `factor` asks for a direct solver".to_owned();
         let reason = match (found.pc, size.against_multigrid()) {
             (Pc::Gamg, _) => many(),
             (_, Some(reason)) => reason,
@@ -331,9 +334,9 @@ fn explain(linear: &Record, (asked, found): (&PetscNames, &Linear), size: Size, 
     }
     if let (Some(factor), None) = (found.factor, asked.factor) {
         let reason = if factor == Factor::Dissection {
-            "nested dissection of the grid: shared between the ranks, repeats to the bit, no analysis of a graph"
+            "nested dissection of the grid is parallel and bitwise reproducible"
         } else {
-            "the default package of PETSc's direct solvers"
+            "the default of PETSc's direct solvers"
         };
         report.note(linear.path_of("factor"), factor.word(), reason);
     }

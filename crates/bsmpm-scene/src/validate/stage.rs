@@ -1,9 +1,11 @@
 //! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
 
+mod absorbing;
+
 use super::history::NAMELESS;
-use super::{free_field, place, reduction, rigid, sheet, site, strip};
+use super::{place, reduction, rigid, sheet, site, strip};
 use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
-use crate::nearest::hint;
+use crate::nearest::unknown_name;
 use crate::record::Record;
 use crate::report::{Report, shortened};
 use crate::words::{Geometry, Side, Word};
@@ -25,7 +27,8 @@ pub(super) fn read_all(
     for (number, record) in root.records("body").iter().enumerate() {
         let name = &bodies[number].name;
         if let Some(first) = bodies[..number].iter().position(|body| name.is_some() && body.name == *name) {
-            record.error("name", format!("body.{first} has that name"), report);
+            let message = format!("E0610: body.{first} has the same name. Rename one of them.");
+            record.error("name", message, report);
         }
     }
     let mut before = 0.0;
@@ -57,7 +60,7 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
     for (record, acting) in all {
         let Some(name) = record.text("name") else { continue };
         if let Some((.., first)) = found.iter().find(|(other, ..)| *other == name) {
-            record.error("name", format!("{} has that name", first.path), report);
+            record.error("name", format!("E0610: {} has the same name. Rename one of them.", first.path), report);
         }
         found.push((name, acting, record));
     }
@@ -93,8 +96,8 @@ fn stage(
     let strength_reduction = record.number("strength_reduction");
     let is_still = is_still && strength_reduction.is_none() && !record.gives("strength_reduction");
     if is_still && faces.is_empty() && materials.is_empty() && !resets_displacements {
-        let message = "it changes nothing: give remove, add, apply, release, boundary, materials, strength_reduction or \
-                       reset_displacements = true";
+        let message = "E0611: the stage changes nothing. Add `add`, `remove`, `activate`, `deactivate`, `boundary`, \
+                       `materials`, `strength_reduction` or `reset_displacements`.";
         report.error(record.origin, &record.path, message);
     }
     let name = record.text("name").map(str::to_owned);
@@ -125,18 +128,19 @@ fn named<T: Copy>(
         return Some(Vec::new());
     }
     let bodies = ["remove", "add"].contains(&key);
-    let acting = "[[traction]], [[point_load]], [[prescribed]], [[rigid]], [[drain]], [[inflow]] or [footing]";
-    let kinds = if bodies { "[[body]]" } else { acting };
+    let kind = if bodies { "[[body]]" } else { "load, motion, footing, rigid body, drain or inflow" };
     let mut find = |name: &String| {
         let mut all = known.iter().filter(|(other, _)| other == name);
         let found = all.next().map(|(_, what)| (name.clone(), *what));
         if !bodies && all.next().is_some() {
-            let told = format!("more than one of what a stage may apply is named \"{}\"", shortened(name));
-            record.error(key, told, report);
+            let message = format!(
+                "E0610: several loads, motions or rigid bodies have the name `{}`. Rename all but one of them.",
+                shortened(name)
+            );
+            record.error(key, message, report);
         }
         if found.is_none() {
-            let hint = hint(name, known.iter().map(|(name, _)| *name));
-            let message = format!("there is no {kinds} with name = \"{}\"{hint}", shortened(name));
+            let message = unknown_name(kind, name, known.iter().map(|(name, _)| *name));
             record.consequence(key, message, if bodies { &["body"] } else { MAY_ACT }, report);
         }
         found
@@ -154,19 +158,26 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
     for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
         let (support, contact) = (super::support(boundary, side)?, super::contact(boundary, side, factor, report)?);
         if support == Support::FreeField {
-            boundary.error(side.word(), "the free field begins with the run: only from the start on", report);
+            let message = "E0614: a free-field boundary must exist from the start. Set it in [boundary], and remove \
+                           it from the stage.";
+            boundary.error(side.word(), message, report);
         }
         let is_wet = root.gives("water") || root.named("material").iter().any(|(_, of)| of.gives("drainage"));
         let is_solid = root.word("geometry") == Some(Geometry::Solid);
         if support == Support::Absorbing && (side != Side::Bottom || is_wet || is_solid) {
-            let message = "a stage may let the bottom of dry ground absorb, but of a solid; sides: from the start on, with \
-                           [initial]";
+            let message = "E0614: a stage can make only the bottom absorbing, and only in 2-D without water. Set it \
+                           in [boundary], with [initial].";
             boundary.error(side.word(), message, report);
         }
         let moves = |motion: &Record| motion.word::<Side>("face") == Some(side);
         if let Some(motion) = root.records("prescribed").iter().find(|motion| support != Support::Free && moves(motion))
         {
-            boundary.error(side.word(), format!("{} moves that face; leave it free", motion.path), report);
+            let message = format!(
+                "E0615: {} already moves this boundary, so the stage cannot support it. Remove the boundary from the \
+                 stage.",
+                motion.path
+            );
+            boundary.error(side.word(), message, report);
         }
         found.push(FaceSupport { face: Face { axis, upper }, support, contact });
     }
@@ -182,32 +193,36 @@ fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<
             let name = pair.text(key)?;
             let found = materials.iter().position(|(other, _)| other == name);
             if found.is_none() {
-                let hint = hint(name, materials.iter().map(|(name, _)| name.as_str()));
-                let message = format!("there is no [material.{}]{hint}", shortened(name));
-                pair.consequence(key, message, &["material"], report);
+                let names = materials.iter().map(|(name, _)| name.as_str());
+                pair.consequence(key, unknown_name("material", name, names), &["material"], report);
             }
             found
         };
         let (from, to) = (number("from"), number("to"));
         let (from, to) = (from?, to?);
         if found.iter().any(|(other, _)| *other == from) {
-            pair.error("from", "it is exchanged already by this stage", report);
+            let message = "E0617: this stage already replaces this material. Remove one of the two replacements.";
+            pair.error("from", message, report);
         }
         found.push((from, to));
     }
     Some(found)
 }
 
-/// What acts is released, and what does not is applied.
+/// Only what is active is deactivated, and only what is inactive is activated.
 fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
     let mut acts: Option<bool> = None;
     for (stage, record) in stages.iter().zip(root.records("stage")) {
         let [releases, applies] = stage.switches(*what);
         if releases && applies {
-            record.error("activate", format!("{name} is released by this stage, too"), report);
+            let message =
+                format!("E0618: the stage both activates and deactivates `{name}`. Remove it from one of the lists.");
+            record.error("activate", message, report);
         } else if (releases && acts == Some(false)) || (applies && acts == Some(true)) {
-            let (key, told) = if releases { ("deactivate", "does not act") } else { ("activate", "acts already") };
-            record.error(key, format!("{name} {told}, by a stage before"), report);
+            let (key, state) = if releases { ("deactivate", "inactive") } else { ("activate", "active") };
+            let message =
+                format!("E0619: `{name}` is already {state} when this stage begins. Remove it from this list.");
+            record.error(key, message, report);
         }
         acts = if releases || applies { Some(applies) } else { acts };
     }
@@ -215,9 +230,16 @@ fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &m
 
 fn timed(at: f64, (before, end, dt): (f64, f64, f64), record: &Record, report: &mut Report<'_>) {
     if at >= end {
-        record.error("at", format!("{at} is not before the end of the run, {end}: no step would follow"), report);
+        let message = format!(
+            "E0620: the stage begins at t = {at}, but the run ends at t = {end}. Use an earlier time, or increase \
+             `analysis.end`."
+        );
+        record.error("at", message, report);
     } else if at - before <= APART * dt {
-        let message = format!("{at} is no step after {before}, the start or the stage before; stages follow in time");
+        let message = format!(
+            "E0621: the stage begins at t = {at}, not after the start or the previous stage (t = {before}). Increase \
+             `at`, or sort the stages."
+        );
         record.error("at", message, report);
     }
 }
@@ -234,15 +256,27 @@ fn once(body: usize, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
     };
     let (added, removed) = (all(|stage| &stage.add), all(|stage| &stage.remove));
     if let Some(&again) = added.get(1) {
-        records[again].error("add", format!("body.{body} has been placed before, by stage.{}", added[0]), report);
+        let message = format!(
+            "E0622: body.{body} is already added by stage.{}, and a body can be added only once. Remove one of the \
+             two entries.",
+            added[0]
+        );
+        records[again].error("add", message, report);
     }
     if let Some(&again) = removed.get(1) {
-        records[again].error("remove", format!("body.{body} has been removed before, by stage.{}", removed[0]), report);
+        let message = format!(
+            "E0622: body.{body} is already removed by stage.{}, and a body can be removed only once. Delete one of \
+             the two entries.",
+            removed[0]
+        );
+        records[again].error("remove", message, report);
     }
     if let (Some(&added), Some(&removed)) = (added.first(), removed.first())
         && removed <= added
     {
-        let message = format!("body.{body} is not there yet: stage.{added} adds it; it may be removed later");
+        let message = format!(
+            "E0622: body.{body} does not exist before stage.{added}, which adds it. Remove it in a later stage."
+        );
         records[removed].error("remove", message, report);
     }
 }
@@ -255,11 +289,14 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     }
     let records = root.records("stage");
     if case.bodies_at_start().next().is_none() {
-        root.error("body", "none is there at the start: stages add all of them", report);
+        let message =
+            "E0623: no body exists at the start, because stages add all bodies. Take one out of the `add` lists.";
+        root.error("body", message, report);
     }
     for (stage, record) in case.stages.iter().zip(records) {
         if !(0..case.bodies.len()).any(|body| case.is_there(body, stage.at)) {
-            record.error("remove", "nothing is left after it", report);
+            let message = "E0623: no body is left after this stage. Keep at least one body.";
+            record.error("remove", message, report);
         }
         for (name, what) in &stage.apply {
             let has_moved = match *what {
@@ -269,7 +306,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             };
             if has_moved {
                 let message = format!(
-                    "{name} has moved before it acts, and would hold what lies at its place then: let its path begin at {}",
+                    "E0624: the path of `{name}` begins before the stage activates it, so it would act away from its \
+                     soil. Begin the path at t = {}.",
                     stage.at
                 );
                 record.error("activate", message, report);
@@ -282,13 +320,13 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             let later = case.stages.iter().map(|later| later.at).filter(|at| *at >= stage.at);
             reduction::divisible(case, &later.collect::<Vec<f64>>(), record, report);
         }
-        beside_absorbing(case, stage, record, report);
+        absorbing::check(case, stage, record, report);
         for &body in &stage.add {
             let named = &case.materials[case.bodies[body].material];
             if !named.material.is_linear() {
                 let message = format!(
-                    "body.{body} comes without stress, and material.{} has no state without: place material of a \
-                     linear elastic law",
+                    "E0625: body.{body} is added without stress, but the stiffness of material.{} follows from its \
+                     stress. Use a model with constant stiffness.",
                     named.name
                 );
                 record.error("add", message, report);
@@ -307,80 +345,17 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             Acting::Strip(_) => at(&lasting, place),
             _ => case.is_held(what, |body| at(std::slice::from_ref(body), place)),
         };
-        let told = match what {
-            Acting::Strip(_) => "from the start to the end",
-            _ => "as long as it acts (apply, release)",
+        let duration = match what {
+            Acting::Strip(_) => "during the whole run",
+            _ => "while it is active",
         };
         if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !held(place)) {
             let message = format!(
-                "at {:?} there is no one body {told}: stages add or remove what it is on",
+                "E0626: a stage adds or removes the body at {:?}, where one body must stay {duration}. Move this \
+                 place, or keep that body.",
                 &at[..case.grid.dims()]
             );
             record.error(key, message, report);
-        }
-    }
-}
-
-/// What faces that absorb hold is found anew as a stage begins: of ground at rest, whose loads stay as they are then,
-/// and beside columns of the free field that it leaves alone.
-fn beside_absorbing(case: &Case, stage: &Stage, record: &Record, report: &mut Report<'_>) {
-    let absorbs = |support: Support| matches!(support, Support::Absorbing | Support::FreeField);
-    let faces = case.faces_at(stage.at);
-    if stage.only_resets() || !faces.iter().any(|of| absorbs(of.support)) {
-        return;
-    }
-    let mut refuse = |key: &str, why: &str| {
-        record.error(
-            key,
-            format!("beside faces that absorb, which hold the ground as a stage leaves it: {why}"),
-            report,
-        );
-    };
-    if case.shakes_from() < stage.at {
-        refuse("at", "it must be at rest; let [shaking] begin later, or give reset_displacements alone");
-    }
-    if stage.strength_reduction.is_some() {
-        refuse("strength_reduction", "what fails is not at rest; fix those faces");
-    }
-    if case.is_ever(Support::Contact) || !case.rigid.is_empty() {
-        refuse("at", "with faces in contact or rigid bodies that was not shown to be right; fix those faces");
-    }
-    let grows = |what: Acting| match what {
-        Acting::Load(load) => case.grows_from(load),
-        _ => true,
-    };
-    if case.still_grows(stage.at) || stage.apply.iter().any(|(_, what)| grows(*what)) {
-        refuse(
-            "at",
-            "its loads must be whole then: let those before end their ramp or amplitude, and apply others with ramp = 0",
-        );
-    }
-    if stage.release.iter().any(|(_, what)| !matches!(what, Acting::Load(_))) {
-        refuse("deactivate", "with strips that was not shown to be right; fix those faces");
-    }
-    for of in faces.iter().filter(|of| of.support == Support::FreeField) {
-        let (lower, higher) = free_field::column(case, of.face.upper);
-        let is_in = |body: &usize| {
-            let [from, to] = case.bodies[*body].bounds();
-            from[0] < higher && to[0] > lower
-        };
-        for key in ["add", "remove"] {
-            let bodies = if key == "add" { &stage.add } else { &stage.remove };
-            if bodies.iter().any(is_in) {
-                refuse(
-                    key,
-                    &format!(
-                        "the cells at \"{}\" are the free field, which has begun: keep out of them",
-                        of.face.side(case.geometry).word()
-                    ),
-                );
-            }
-        }
-        if !stage.materials.is_empty() {
-            refuse("materials", "the free field at the sides goes on with the laws it began with; fix those faces");
-        }
-        if stage.faces.iter().any(|of| of.face.axis == 0) {
-            refuse("boundary", "the free field at the sides has begun: change \"bottom\" or \"top\" only");
         }
     }
 }
@@ -389,20 +364,21 @@ fn beside_absorbing(case: &Case, stage: &Stage, record: &Record, report: &mut Re
 fn exchanged(case: &Case, (from, to): (usize, usize), pair: &Record, report: &mut Report<'_>) {
     let [from, to] = [from, to].map(|number| (number, &case.materials[number]));
     if !case.bodies.iter().any(|body| body.material == from.0) {
-        pair.error("from", format!("no body is made of material.{}", from.1.name), report);
+        let message = format!("E0613: no body consists of material.{}. Name a material of a body.", from.1.name);
+        pair.error("from", message, report);
     }
     if from.1.density != to.1.density {
         let message = format!(
-            "material.{} and material.{} differ in density, and points keep their mass: give both the same unit_weight or \
-             density",
+            "E0629: material.{} and material.{} differ in density, and the ground keeps its mass. Give both the same \
+             `unit_weight`.",
             from.1.name, to.1.name
         );
         pair.error("to", message, report);
     }
     if !to.1.material.is_linear() {
         let message = format!(
-            "what material.{} was compressed by before is not told by the stress that another law leaves: exchange it for \
-             material of a linear elastic law",
+            "E0625: the stiffness of material.{} depends on its stress history, which the replaced material does not \
+             have. Use a model with constant stiffness.",
             to.1.name
         );
         pair.error("to", message, report);

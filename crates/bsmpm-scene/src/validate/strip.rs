@@ -1,5 +1,6 @@
 //! The footing and prescribed motions.
 
+use super::load::{not_increasing, warn_of_late};
 use super::place::{is_beyond, is_in, side_of_bodies};
 use super::site::{AroundStrip, corners, normal_of, places, site};
 use crate::case::{Base, Body, Case, Face, Footing, History, MotionPath, Prescribed, Quantity, Site};
@@ -27,7 +28,8 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
         None => (record.word("interface")?, None),
     };
     if base == Base::Smooth && contact.is_none() && normal_part(&path, site) <= NOTHING * path.farthest() {
-        let message = "a smooth base holds its normal component only, and the motion has none";
+        let message = "E0416: a smooth base acts along its normal only, and this motion has no part along it. The soil would not \
+                       be loaded. Use interface = \"rough\", or change the motion.";
         record.error(motion(record), message, report);
     }
     Some(Footing { site, path, base, contact, rests: false })
@@ -44,7 +46,9 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             Site::Face(face) => {
                 inward(record, face, &path, report);
                 if found.iter().any(|other| other.site == site) {
-                    record.error("face", "its motion is prescribed already", report);
+                    let message =
+                        "E0417: the motion of this face is prescribed already. Combine both in one [[prescribed]].";
+                    record.error("face", message, report);
                 }
             }
             Site::Segment { .. } | Site::Plate(_) => stays_inside(record, site, &path, around, report),
@@ -53,8 +57,8 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             Site::Segment { .. } | Site::Plate(_) => rubs((root, record), "components", site, around, report),
             Site::Face(_) => {
                 if record.record("components").is_some() {
-                    let message =
-                        "a face that moves does not rub or let go; a segment does, and a face that rests in [boundary]";
+                    let message = "E0418: contact is not available on a moving face of the grid. Use a segment (`from`, `to`) \
+                                   inside the grid instead.";
                     record.error("components", message, report);
                 }
                 None
@@ -84,14 +88,16 @@ fn rubs(
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return Some(None) };
     let bodies: Vec<&Body> = bodies.iter().collect();
     let Some(side) = side_of_bodies(grid, |off| with_body(site, off, (grid, &bodies))) else {
-        record.error(key, "bodies lie on both sides of it, or on none: it rubs and lets go on one", report);
+        let message = "E0404: bodies lie on both sides of this surface, or on neither. Contact acts on one side only. Move the \
+                       surface to that of a body.";
+        record.error(key, message, report);
         return Some(None);
     };
     let regime = root.record("analysis").and_then(|analysis| analysis.word("type"));
     if regime == Some(AnalysisType::Dynamic) {
         report.warn(format!(
-            "{}: strips that rub and let go were shown to be right in quasi-static analysis only; look at the energy history \
-             for what impacts make or lose",
+            "W0406: {}: contact is verified in quasi-static analysis only. In dynamic analysis an impact may create or dissipate \
+             energy. Check the energy history.",
             record.path_of(key)
         ));
     }
@@ -132,31 +138,29 @@ fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Ve
         match rows.last() {
             _ if k == 0 && t == 0.0 && u == [0.0; 3] => continue,
             _ if k == 0 && t == 0.0 => {
-                report.error(
-                    row.origin,
-                    &key,
-                    format!("{along:?} at time 0; a path starts with {:?} there", vec![0.0; along.len()]),
+                let message = format!(
+                    "E0403: the displacement at t = 0 is {along:?} m. A path begins at rest. Give zeros there, or a row at a \
+                     later time."
                 );
+                report.error(row.origin, &key, message);
                 return None;
             }
             Some((before, _)) if *before >= t => {
-                report.error(row.origin, &key, format!("t = {t} is not above {before}, that of the row before"));
+                report.error(row.origin, &key, not_increasing("t", t, *before));
                 return None;
             }
             None if t == 0.0 => {
-                report.error(row.origin, &key, "t = 0 is not above 0, that of the row before");
+                report.error(row.origin, &key, not_increasing("t", t, 0.0));
                 return None;
             }
             _ => rows.push((t, u)),
         }
     }
     if rows.is_empty() {
-        record.error("path", "a path needs at least one row [t, ux, uy] with t > 0", report);
+        record.error("path", "E0435: the path has no row after t = 0. Give at least one row [t, ux, uy].", report);
         return None;
     }
-    if let Some((t, _)) = rows.iter().find(|(t, _)| end.is_some_and(|end| *t > end)) {
-        report.warn(format!("{}: the row at t = {t} is beyond the end of the run", record.path_of("path")));
-    }
+    warn_of_late(&record.path_of("path"), rows.iter().map(|row| row.0), end, report);
     Some(rows)
 }
 
@@ -171,15 +175,22 @@ fn stays_inside(record: &Record, site: Site, path: &MotionPath, around: AroundSt
     let at = |end: [f64; 3], u: [f64; 3]| std::array::from_fn(|axis| end[axis] + u[axis]);
     let beyond =
         |(t, u): &(f64, [f64; 3])| Some((*t, corners.into_iter().find_map(|end| is_beyond(grid, at(end, *u)))?));
-    if let Some((t, message)) = path.rows.iter().find_map(beyond) {
-        record.error(motion(record), format!("at t = {t} it has left the grid: {message}"), report);
+    if let Some((t, outside)) = path.rows.iter().find_map(beyond) {
+        let message = format!(
+            "E0419: the motion leaves the grid: at t = {t}, {outside}. Reduce the motion, or enlarge the grid."
+        );
+        record.error(motion(record), message, report);
     }
 }
 
 fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_>) {
     let outward = |u: f64| if face.upper { u > 0.0 } else { u < 0.0 };
     if let Some((t, u)) = path.rows.iter().find(|(_, u)| outward(u[face.axis])) {
-        let message = format!("at t = {t} the face has left the grid by {u:?}; it may move inward or along itself");
+        let message = format!(
+            "E0420: the face has moved out of the grid by {} m at t = {t}. A face can move inward or along itself only. Reverse \
+             the motion.",
+            u[face.axis].abs()
+        );
         record.error(motion(record), message, report);
     }
 }
@@ -199,19 +210,17 @@ pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
     for (number, site) in sites.into_iter().enumerate() {
         let Some(history) = case.histories.iter().find(|history| is_of_force(history, number, case)) else { continue };
         let Some((side, support)) = met(case, site) else { continue };
-        let what = match support {
-            Support::Roller => {
-                "holds at the edge a part of what it presses with across that face, which is missing in its force (of a base of 22 \
-                 degrees on 8 cells 12 % of the horizontal part); the force along that face is whole"
-                    .to_owned()
-            }
-            _ => format!(
-                "is fixed and holds at the edge a part of what it presses with, which is missing in its force (4 % on a wall of 16 \
-                 cells, 8 % on one of 8); {side} = \"roller\" or {{ friction = ... }} holds none of it, and a [[rigid]] body has \
-                 all"
+        let (name, history) = (name_of_strip(case, number), &history.name);
+        report.warn(match support {
+            Support::Roller => format!(
+                "W0407: `{name}` is inclined and ends at the roller boundary `{side}`, which carries a part of its force. That part \
+                 is missing in history `{history}`. Use the component along `{side}`."
             ),
-        };
-        report.warn(format!("history `{}`: {} meets {side}, which {what}", history.name, name_of_strip(case, number)));
+            _ => format!(
+                "W0408: `{name}` ends at the fixed boundary `{side}`, which carries a part of its force. That part is missing in \
+                 history `{history}`. Use boundary.{side} = \"roller\"."
+            ),
+        });
     }
 }
 

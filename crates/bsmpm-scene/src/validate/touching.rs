@@ -28,8 +28,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for Overlap { one, other, t } in &overlaps {
         let [name, of] = [one, other].map(|number| &case.rigid[*number].name);
         let message = format!(
-            "rigid bodies `{name}` and `{of}` overlap at t = {t:.4} by their paths. Rigid bodies do not touch each other, and the \
-             run would end there. Change their paths, or end the analysis before."
+            "E0249: the paths of rigid bodies `{name}` and `{of}` make them overlap at t = {t:.4}. Contact between \
+             rigid bodies is not available. Change a path, or reduce analysis.end."
         );
         if let Some(record) = root.records("rigid").get(*other) {
             record.error("name", message, report);
@@ -100,14 +100,18 @@ fn check_meetings(case: &Case, root: &Record, report: &mut Report<'_>) {
             }
             let cells = width / case.grid.shortest();
             let [name, of] = [one, other].map(|number| &case.rigid[number].name);
-            let message = format!(
-                "rigid bodies `{name}` and `{of}` meet in one plane and move differently: forces are about {:.0} % too large with \
-                 {cells:.0} cells across the smaller face. Use [[prescribed]] segments, or smaller cells.",
-                100.0 / cells
+            let excess = 100.0 / cells;
+            let warning = format!(
+                "W0232: rigid bodies `{name}` and `{of}` meet in one plane and move differently. Their forces are \
+                 about {excess:.0} % too large ({cells:.0} cells across). Use smaller cells, or [[prescribed]]."
+            );
+            let error = format!(
+                "E0250: rigid bodies `{name}` and `{of}` meet in one plane and move differently. Their forces would be \
+                 {excess:.0} % too large ({cells:.0} cells across). Use smaller cells, or [[prescribed]]."
             );
             match root.records("rigid").get(other) {
-                Some(record) if cells < FEWEST_CELLS => record.error("name", message, report),
-                _ => report.warn(message),
+                Some(record) if cells < FEWEST_CELLS => record.error("name", error, report),
+                _ => report.warn(warning),
             }
         }
     }

@@ -22,13 +22,13 @@ pub(super) fn warn(case: &Case, water: &Water, report: &mut Report<'_>) {
         (area > 0.0).then(|| format!("`{}` {:.4} kN/m", rigid.name, water.unit_weight * area * 1e-3))
     };
     let lacking: Vec<String> = case.rigid.iter().filter_map(lacking).collect();
-    let sizes = match lacking.is_empty() {
+    let missing = match lacking.is_empty() {
         true => String::new(),
-        false => format!(" At the start the buoyancy of {} is missing.", lacking.join(", ")),
+        false => format!(" (at the start: {})", lacking.join(", ")),
     };
     report.warn(format!(
-        "water: it does not press on rigid bodies: their forces are those besides the water's.{sizes} Reduce rigid.mass or \
-         rigid.force by it, and add the water's thrust to the histories."
+        "W0429: water: it exerts no pressure on rigid bodies. Their buoyancy is missing{missing}. Reduce rigid.mass or \
+         rigid.force by it, and add the water pressure to recorded forces."
     ));
 }
 

@@ -3,7 +3,6 @@
 use crate::case::{Body, Case, MASS, Support};
 use crate::record::Record;
 use crate::report::Report;
-use crate::spectrum::SHARE;
 use crate::waves::{WaveInput, fewest_cells, inputs};
 use crate::words::Word;
 use bsmpm::model::Regime;
@@ -22,8 +21,8 @@ pub(super) fn choose_mass(case: &mut Case, record: &Record, report: &mut Report<
     let followed = (0..case.materials.len()).filter(|&number| case.is_followed(number));
     let is_elastic = followed.map(|number| &case.materials[number]).all(|named| !named.material.yields());
     let reason = match (case.shaking.is_empty(), is_elastic) {
-        (false, _) => "waves of [shaking] travel at the right speed with it",
-        (true, true) => "all materials are elastic, whose waves travel at the right speed with it",
+        (false, _) => "waves of [shaking] have the correct speed with it",
+        (true, true) => "elastic waves have the correct speed with it",
         (true, false) => return,
     };
     case.analysis.mass = MassMatrix::Consistent;
@@ -51,14 +50,14 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     };
     let remedy = match case.analysis.mass {
         MassMatrix::Lumped if cells >= fewest_cells(MassMatrix::Consistent, case.grid.order) && !touches(case) => {
-            "Set analysis.mass = \"consistent\", or reduce grid.cell"
+            "Use analysis.mass = \"consistent\", or reduce `grid.cell`"
         }
-        _ => "Reduce grid.cell",
+        _ => "Reduce `grid.cell`",
     };
-    let (wave, part) = (if input.axis.is_some() { "compression" } else { "shear" }, 100.0 * SHARE);
+    let wave = if input.axis.is_some() { "compression" } else { "shear" };
     report.warn(format!(
-        "{}: {wave} waves of {:.3} Hz ({part} % of its energy lies below) have {cells:.1} cells per wavelength. With fewer \
-         than {fewest} their speed is wrong by more than 2 %. {remedy}.",
+        "W0680: {}: {wave} waves of {:.3} Hz have {cells:.1} cells per wavelength (at least {fewest} needed): their \
+         speed is wrong by more than 2 %. {remedy}.",
         input.name, input.frequency
     ));
 }

@@ -105,7 +105,7 @@ choice! {
         /// It stays where it is, and its excess pressure is an unknown.
         Undrained = "undrained",
     } misnomers [
-        "drained": "soil that drains in time is \"coupled\", with a permeability; soil without excess pressure is \"hydrostatic\""
+        "drained": "Soil without excess pore pressure is \"hydrostatic\", soil that consolidates is \"coupled\""
     ] earlier ["given": "hydrostatic"]
 }
 

@@ -38,14 +38,16 @@ const MATRIX: &[Input] = &[
             "young    = \"20 MPa\"\n",
             "",
             YOUNG_KEY,
-            "missing; it is a number (Pa) or a string with a unit",
+            "this key is missing. Add it; its value is a number (Pa) or a string with a unit",
         )
         .up(2)],
         ..NONE
     },
     Input {
         id: "I04",
-        refused: &[row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "`poisson` is given twice, here and in line 19").down(1)],
+        refused: &[
+            row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "`poisson` is given twice, here and in line 19").down(1)
+        ],
         ..NONE
     },
     Input {
@@ -66,18 +68,13 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I09",
         refused: &[
-            row(
-                POISSON,
-                "poisson = 0.5",
-                "material.sand.poisson",
-                "0.5 is out of range; allowed: -1 < poisson < 0.5 (at 0.5",
-            ),
-            row(POISSON, "poisson = 0.5000001", "material.sand.poisson", "allowed: -1 < poisson < 0.5"),
-            row(POISSON, "poisson = -1", "material.sand.poisson", "-1 is out of range"),
+            row(POISSON, "poisson = 0.5", "material.sand.poisson", "0.5 is out of range; (-1 < poisson < 0.5 (at 0.5"),
+            row(POISSON, "poisson = 0.5000001", "material.sand.poisson", "(-1 < poisson < 0.5"),
+            row(POISSON, "poisson = -1", "material.sand.poisson", "-1 is outside the allowed range"),
             row(POISSON, "poisson = -1.5", "material.sand.poisson", "-1.5 is out of range"),
         ],
         taken: &[
-            (POISSON, "poisson = 0.49995", "material.sand: poisson = 0.49995 is nearly incompressible"),
+            (POISSON, "poisson = 0.49995", "W0303: material.sand: poisson = 0.49995"),
             (POISSON, "poisson = 0.499", "water.bulk = 1.66"),
             (POISSON, "poisson = 0.4989", ""),
             (POISSON, "poisson = -0.99", ""),
@@ -87,33 +84,24 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I10",
         refused: &[
-            row(
-                "\"30 deg\"",
-                "-1",
-                "material.sand.friction_angle",
-                "-1 is out of range; allowed: 0 <= friction_angle < 90",
-            ),
-            row(
-                "\"30 deg\"",
-                "90",
-                "material.sand.friction_angle",
-                "90 is out of range; allowed: 0 <= friction_angle < 90",
-            ),
+            row("\"30 deg\"", "-1", "material.sand.friction_angle", "-1 is out of range; (0 <= friction_angle < 90"),
+            row("\"30 deg\"", "90", "material.sand.friction_angle", "90 is out of range; (0 <= friction_angle < 90"),
             row(
                 "dilation_angle = 5",
                 "dilation_angle = 30.1",
                 "material.sand.dilation_angle",
-                "30.1 is out of range; allowed: 0 <= dilation_angle <= friction_angle = 30",
+                "30.1 is out of range; (0 <= dilation_angle <= friction_angle = 30",
             ),
-            row("dilation_angle = 5", "dilation_angle = -1", "material.sand.dilation_angle", "-1 is out of range"),
-            row("\"1 kPa\"", "\"-1 kPa\"", "material.sand.cohesion", "allowed: cohesion >= 0"),
+            row(
+                "dilation_angle = 5",
+                "dilation_angle = -1",
+                "material.sand.dilation_angle",
+                "-1 is outside the allowed range",
+            ),
+            row("\"1 kPa\"", "\"-1 kPa\"", "material.sand.cohesion", "(cohesion >= 0"),
         ],
         taken: &[
-            (
-                "cohesion    = 2e4",
-                "cohesion = 0",
-                "material.clay: friction and cohesion are both 0: the material has no strength",
-            ),
+            ("cohesion    = 2e4", "cohesion = 0", "W0309: material.clay: "),
             ("cohesion = \"1 kPa\"", "cohesion = 0", ""),
         ],
         ..NONE
@@ -125,10 +113,10 @@ const MATRIX: &[Input] = &[
                 "upper = [4.0, 1.0] }",
                 "upper = [0.0, 1.0] }",
                 "body.0.box.upper",
-                "is not above lower = [0.0, 0.0]: the body is empty",
+                "is not above lower = [0.0, 0.0] along each axis",
             ),
             row("upper = [4.0, 1.0] }", "upper = [4.0, 1e-12] }", "body.0.box.upper", "it has no points"),
-            row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "allowed: radius > 0"),
+            row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "(radius > 0"),
         ],
         refused_static: &[row("[[body]]\nmaterial", "[[bodies]]\nmaterial", "bodies", "unknown key `bodies`")],
         ..NONE
@@ -140,7 +128,7 @@ const MATRIX: &[Input] = &[
                 "upper = [4.0, 1.0] }",
                 "upper = [4.0, 3.5] }",
                 "body.0.box.upper",
-                "3.5 is outside the grid, which ends at y = 3",
+                "y = 3.5 m is outside the grid, which ends at y = 3 m",
             ),
             row(
                 "centre = [0.5, 2.0]",
@@ -158,19 +146,13 @@ const MATRIX: &[Input] = &[
                 "[0.5, \"50 cm\"]",
                 "[0.5, 0.7]",
                 "grid.cell",
-                "along y is no whole number, and neither face is free to move; e.g. cell = 0.75",
+                "along y, not a whole number, and neither face there is free to move. Use for example cell = 0.75",
             ),
-            row(
-                "cell  = [0.5, \"50 cm\"]",
-                "cell = [4, 3]",
-                "footing.to",
-                "it would hold that cell and its neighbours",
-            )
-            .down(76),
-            row("upper = [4.0, 3.0]", "upper = [4.0, 0.0]", "grid.upper", "is not above lower"),
-            row("upper = [4.0, 3.0]", "upper = [-4.0, 3.0]", "grid.upper", "is not above lower"),
+            row("cell  = [0.5, \"50 cm\"]", "cell = [4, 3]", "footing.to", "E0235").down(76),
+            row("upper = [4.0, 3.0]", "upper = [4.0, 0.0]", "grid.upper", "E0203"),
+            row("upper = [4.0, 3.0]", "upper = [-4.0, 3.0]", "grid.upper", "E0203"),
         ],
-        taken: &[("cell  = [0.5, \"50 cm\"]", "cell = [1, 3]", "meet inside cells")],
+        taken: &[("cell  = [0.5, \"50 cm\"]", "cell = [1, 3]", "W0222")],
         ..NONE
     },
     Input {
@@ -192,7 +174,7 @@ const MATRIX: &[Input] = &[
             row("points_per_cell = 3", "points_per_cell = 2.5", "body.0.points_per_cell", "found 2.5"),
         ],
         taken: &[
-            ("points_per_cell = 3", "points_per_cell = 1", "1 point per cell integrates too coarsely"),
+            ("points_per_cell = 3", "points_per_cell = 1", "W0210"),
             ("points_per_cell = 3", "points_per_cell = 100", ""),
         ],
         ..NONE
@@ -202,12 +184,7 @@ const MATRIX: &[Input] = &[
         refused: &[
             row("top    = \"fixed\"", "up = \"fixed\"", "boundary.up", "unknown key `up` in [boundary]"),
             row("face = \"right\"", "face = \"rigth\"", "prescribed.0.face", "did you mean `right`?"),
-            row(
-                "face = \"right\"",
-                "face = \"top\"",
-                "prescribed.0.face",
-                "[boundary] holds \"top\" too; leave it free there",
-            ),
+            row("face = \"right\"", "face = \"top\"", "prescribed.0.face", "E0236"),
         ],
         refused_static: &[
             row("bottom = \"fixed\"", "", "boundary", "no support holds the bodies along x").up(1),
@@ -223,7 +200,7 @@ const MATRIX: &[Input] = &[
                 "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
                 "[[1.0, 0, 0], [0.5, 0, 0]]",
                 "prescribed.1.path",
-                "t = 0.5 is not above 1, that of the row before",
+                "E0402 .. t = 0.5 .. 1 in the row before",
             ),
             row(
                 "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
@@ -232,12 +209,7 @@ const MATRIX: &[Input] = &[
                 "a path needs at least one row [t, ux, uy] with t > 0",
             ),
             row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "at least one row"),
-            row(
-                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
-                "[[1.0, 0, nan]]",
-                "prescribed.1.path",
-                "nan is no finite number",
-            ),
+            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1.0, 0, nan]]", "prescribed.1.path", "nan is E0010"),
             row(
                 "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
                 "[[1e-300, 0, 0]]",
@@ -253,29 +225,24 @@ const MATRIX: &[Input] = &[
         refused: &[
             row("end  = \"1 s\"", "end = \"-1 s\"", "analysis.end", "\"-1 s\" is out of range; allowed: end > 0"),
             row("\"10 ms\"", "1.5", "analysis.dt", "1.5 is out of range; allowed: dt <= end = 1"),
-            row(
-                "dt   = \"10 ms\"",
-                "steps = 0",
-                "analysis.steps",
-                "0 is out of range; allowed: 1 <= steps <= 1000000000",
-            ),
+            row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "0 is out of range; (1 <= steps <= 1000000000"),
             row("dt   = \"10 ms\"", "steps = 1_000_000_000_000", "analysis.steps", "1000000000000 is out of range"),
-            row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps of dt to the end; at most 1e9 are possible"),
+            row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps until the end (at most 1e9)"),
             row("every  = \"0.1 s\"", "every = 0", "output.every", "0 is out of range; allowed: every > 0"),
-            row("times  = [\"0.25 s\", 0.75]", "times = [1e-9]", "output.times", "allowed: at least 1e-6 dt"),
-            row("at       = \"0.5 s\"", "at = 1e-9", "check.0.at", "allowed: at least 1e-6 dt"),
+            row("times  = [\"0.25 s\", 0.75]", "times = [1e-9]", "output.times", "E0664"),
+            row("at       = \"0.5 s\"", "at = 1e-9", "check.0.at", "E0664"),
         ],
         taken: &[
             ("dt   = \"10 ms\"", "steps = 1", ""),
-            ("every  = \"0.1 s\"", "every = 3", "output.every: 3 is beyond the end"),
+            ("every  = \"0.1 s\"", "every = 3", "W0661: output.every: "),
             (
                 "[\"1 s\", \"-0.1 g\"",
-                "[\"3 s\", \"-0.1 g\"",
-                "shaking.acceleration: the row at t = 3 is beyond the end",
+                "[\"2 ms\", \"-0.1 g\"",
+                "W0404: shaking.acceleration: rows are 0.002 apart in time, but a step is 0.01",
             ),
             ("[\"1 s\", \"-0.1 g\"", "[\"2 ms\", \"-0.1 g\"", "rows are 0.002 apart and steps 0.01"),
             ("bottom = \"fixed\"", "bottom = { friction_coefficient = 1.5 }", "shown to be right up to 1"),
-            ("bottom = \"fixed\"", "bottom = \"contact\"", "thrown back with energy that it did not have"),
+            ("bottom = \"fixed\"", "bottom = \"contact\"", "W0671: analysis.dt: "),
             ("ramp = \"0.5 s\"", "amplitude = [[2, 1]]", "traction.0.amplitude: the row at t = 2 is beyond the end"),
             ("ramp = \"0.5 s\"", "amplitude = [[0, 1]]", "traction.0: acts in full from time 0"),
         ],
@@ -288,9 +255,9 @@ const MATRIX: &[Input] = &[
                 "[0.5, \"50 cm\"]",
                 "[4e-6, 3e-6]",
                 "grid.cell",
-                "1000000000000 cells and 2000008000008 unknowns; at most 2147483647",
+                "1000000000000 cells and 2000008000008 unknowns (at most 2147483647",
             ),
-            row("[0.5, \"50 cm\"]", "[1e-9, 1e-9]", "grid.cell", "cells along x; at most 2147483647 are possible"),
+            row("[0.5, \"50 cm\"]", "[1e-9, 1e-9]", "grid.cell", "cells along x (at most 2147483647)"),
             row(
                 "upper = [4.0, 3.0]",
                 "upper = [9223372036854775807, 3.0]",
@@ -308,7 +275,7 @@ const MATRIX: &[Input] = &[
                 "factor = 1.25",
                 "factor = -1.25",
                 "strength_reduction.factor",
-                "-1.25 is out of range; allowed: 0.1 <= factor <= 100",
+                "-1.25 is out of range; (0.1 <= factor <= 100",
             ),
             row("factor = 1.25", "factor = 0", "strength_reduction.factor", "0 is out of range"),
         ],
@@ -325,7 +292,10 @@ const MATRIX: &[Input] = &[
             ),
             row("\"2 t/m3\"", "1e308", "material.sand.density", "a density is at most 1e9 in SI"),
         ],
-        taken: &[("-9.81]", "-1e12]", ""), ("density  = \"2 t/m3\"", "density = 1e9", "W0108: material.sand: 1000000000.000 kg/m3")],
+        taken: &[
+            ("-9.81]", "-1e12]", ""),
+            ("density  = \"2 t/m3\"", "density = 1e9", "W0108: material.sand: 1000000000.000 kg/m3"),
+        ],
         ..NONE
     },
     Input {
@@ -334,17 +304,13 @@ const MATRIX: &[Input] = &[
             "density  = \"2 t/m3\"",
             "unit_weight = 2e4\ndensity = 2000",
             "material.sand.density",
-            "`unit_weight` is given too; only one of",
+            "`unit_weight` is given too",
         )
         .down(1)],
         taken: &[
             (YOUNG, "20", "W0101: material.sand.young: 20 Pa is 0.02 kPa"),
             (YOUNG, "\"20000 GPa\"", "check the unit"),
-            (
-                "\"18 kN/m3\"",
-                "18",
-                "W0108: material.clay: 1.835 kg/m3, a unit weight of 0.018 kN/m3",
-            ),
+            ("\"18 kN/m3\"", "18", "W0108: material.clay: 1.835 kg/m3, a unit weight of 0.018 kN/m3"),
         ],
         ..NONE
     },
@@ -355,48 +321,36 @@ const MATRIX: &[Input] = &[
                 "material = \"sand\"\npressure",
                 "material = \"snad\"\npressure",
                 "element.consolidated.material",
-                "there is no material `snad`; did you mean `sand`?",
+                "E0612",
             ),
-            row(
-                "material = \"sand\"\npressure",
-                "pressure",
-                "element.consolidated.material",
-                "missing; there are 4 materials",
-            )
-            .up(1),
-            row(
-                "height = \"2 m\"\n",
-                "",
-                "element.mixed.height",
-                "missing; parameters of material.till depend on the height",
-            )
-            .up(2),
+            row("material = \"sand\"\npressure", "pressure", "element.consolidated.material", "E0693").up(1),
+            row("height = \"2 m\"\n", "", "element.mixed.height", "E0692").up(2),
             row(
                 "{ test = \"isotropic\", pressure = \"100 kPa\", steps = 10 }",
                 "{ test = \"isotropic\", shear = 0.1 }",
                 "element.consolidated.stage.0.shear",
-                "has no meaning in test \"isotropic\"",
+                "E0694",
             ),
             row(
                 "{ test = \"isotropic\", pressure = \"100 kPa\", steps = 10 }",
                 "{ test = \"isotropic\" }",
                 "element.consolidated.stage.0",
-                "missing: compression or pressure (test \"isotropic\")",
+                "E0694",
             ),
             row(
                 "{ test = \"isotropic\", pressure",
                 "{ test = \"isotropic\", undrained = true, pressure",
                 "element.consolidated.stage.0.undrained",
-                "nothing can move without drainage",
+                "E0695",
             ),
             row(
                 "duration = \"1 h\" },",
                 "duration = \"1 h\" },\n    { test = \"oedometer\", compression = 0.1 },",
                 "element.consolidated.stage.2",
-                "a drained stage after an undrained one",
+                "E0691",
             )
             .down(1),
-            row("strain_yy = -0.01\n", "", "element.mixed.stage.0", "missing: strain_yy or stress_yy").up(3),
+            row("strain_yy = -0.01\n", "", "element.mixed.stage.0", "E0694").up(3),
             row(
                 "strain_yy = -0.01\n",
                 "strain_yy = -0.01\nstress_yy = 0\n",

@@ -1,6 +1,6 @@
 //! One slip of the author gives one error, the one that names it: what only follows from it is not printed.
 
-use super::written::{self, Fits, Written};
+use super::written::{self, Fits};
 use super::{bases, without};
 use bsmpm_scene::schema::Kind;
 use bsmpm_scene::{Case, Error};

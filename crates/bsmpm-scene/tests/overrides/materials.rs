@@ -63,26 +63,26 @@ fn softening_strengths() {
     let parameters = clay.parameters();
     assert_eq!((parameters[2], parameters[5], parameters[6]), (800.0, 0.0, 0.2));
     assert!((parameters[3].tan() * 1.25 - f64::to_radians(25.0).tan()).abs() < 1e-14);
-    assert!(case.warnings.iter().any(|warning| warning.contains("results depend on the cells")), "{:?}", case.warnings);
+    assert!(case.warnings.iter().any(|warning| warning.starts_with("W0307: material.clay: ")), "{:?}", case.warnings);
     let case = with("residual_cohesion = 0, softening_strain = 0.2, band_width = \"5 cm\"").expect("a valid case");
     let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else { panic!() };
     assert!((clay.parameters()[6] - 0.01).abs() < 1e-15, "{:?}", clay.parameters());
     assert!(!case.warnings.iter().any(|warning| warning.contains("depend on the cells")));
     for (text, reported) in [
         ("softening_strain = 0.2", "needs it"),
-        ("residual_cohesion = 0, softening_strain = 0", "allowed: softening_strain > 0"),
+        ("residual_cohesion = 0, softening_strain = 0", "(softening_strain > 0"),
         (
             "residual_cohesion = 0, softening_strain = 0.2, residual_dilation_angle = 26",
             "0 <= residual_dilation_angle <= ",
         ),
         ("residual_cohesion = 0, softening_strain = 0.2, softening = \"quadratic\"", "exponential"),
-        ("residual_cohesion = 0, softening_strain = 0.2, separation = \"gap\"", "has no meaning"),
+        ("residual_cohesion = 0, softening_strain = 0.2, separation = \"gap\"", "E0304"),
     ] {
         let message = format!("{:?}", with(text).expect_err(text));
         assert!(message.contains(reported), "{message}");
     }
     let case = with("residual_cohesion = 0, softening_strain = 1e-5").expect("a valid case");
-    assert!(case.warnings.iter().any(|warning| warning.contains("drops at once")), "{:?}", case.warnings);
+    assert!(case.warnings.iter().any(|warning| warning.starts_with("W0305: material.clay: ")), "{:?}", case.warnings);
 }
 
 /// The width of a band was measured in plane strain, with some methods and splines, and not under what pushes.
@@ -93,7 +93,7 @@ fn band_widths_are_warned_of_where_they_were_not_measured() {
     let reports = |base: &str, set: &[&str]| {
         let warnings = valid(base, &[&[clay], set].concat()).warnings;
         let found: Vec<_> =
-            warnings.into_iter().filter(|warning| warning.contains("do the work of 2 of them")).collect();
+            warnings.into_iter().filter(|warning| warning.starts_with("W0304: material.soil.band_width: ")).collect();
         assert!(found.len() <= 1, "{found:?}");
         found.concat()
     };
@@ -102,12 +102,12 @@ fn band_widths_are_warned_of_where_they_were_not_measured() {
     };
     assert!(["consistent-f-bar", "f-bar", "subgrid-f-bar"].iter().all(|method| with(method, &[]).is_empty()));
     for (found, expected) in [
-        (with("modified-f-bar", &[]), "that of 1.3, -35 %"),
-        (with("none", &[]), "that of 3.0, +50 %"),
-        (with("f-bar-zhao", &[]), "it never was"),
-        (with("f-bar", &["grid.degree=linear"]), "that of 2.25, +12 %"),
-        (with("f-bar", &["footing={ from = [0.5, 1], to = [1, 1], displacement = [0, -0.1] }"]), "under a strip"),
-        (reports(ROUND, &["grid.cell=0.25", "stabilisation.method=f-bar"]), "in \"axisymmetric\" it never was"),
+        (with("modified-f-bar", &[]), "with \"modified-f-bar\" (dissipation -35 %)"),
+        (with("none", &[]), "without stabilisation (dissipation +50 %)"),
+        (with("f-bar-zhao", &[]), "with \"f-bar-zhao\""),
+        (with("f-bar", &["grid.degree=linear"]), "with linear splines (dissipation +12 %)"),
+        (with("f-bar", &["footing={ from = [0.5, 1], to = [1, 1], displacement = [0, -0.1] }"]), "below a footing"),
+        (reports(ROUND, &["grid.cell=0.25", "stabilisation.method=f-bar"]), "for geometry = \"axisymmetric\""),
     ] {
         assert!(found.contains(expected), "{expected}: {found}");
     }
@@ -179,7 +179,7 @@ fn strength_reduction_makes_every_material_elastic_and_stiffer() {
         }
     }
     assert!(!own.materials.iter().all(|named| is_elastic(&named.material.at(3.0))));
-    assert!(case.warnings.iter().all(|warning| !warning.contains("no material has strength")));
+    assert!(case.warnings.iter().all(|warning| !warning.starts_with("W0601")));
     let note = case.notes.iter().find(|note| note.key == "material.clay").unwrap();
     assert!(note.value.contains("young x 20, elastic"), "{note:?}");
 }
@@ -195,7 +195,8 @@ fn strength_reduction_leaves_the_stress_at_the_start_out_and_lets_loads_grow() {
     assert!(case.initial.is_none() && ramps(&case) == (case.analysis.end, case.analysis.end));
     // What grows by itself keeps its time.
     assert_eq!(case.point_loads[0].ramp, own.point_loads[0].ramp);
-    let noted: Vec<_> = case.notes.iter().filter(|note| note.reason == "strength_reduction.unloaded").collect();
+    let noted: Vec<_> =
+        case.notes.iter().filter(|note| note.reason.starts_with("strength_reduction.unloaded")).collect();
     assert!(noted.len() == 2 && noted[0].key == "gravity.ramp", "{noted:?}");
 }
 
@@ -216,8 +217,8 @@ fn a_material_without_cohesion_may_close_its_gaps() {
 /// Modified Cam-clay: its numbers, by the height too, where its linear moduli hold, and what it needs to begin with.
 #[test]
 fn cam_clay_and_its_start() {
-    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"modified-cam-clay\", kappa_star = 0.02, lambda_star = 0.1, \
-                critical_state_ratio = 1.2";
+    let keys = "young = 1e7, poisson = 0.3, density = 2e3, model = \"modified-cam-clay\", kappa_star = 0.02, \
+    lambda_star = 0.1, critical_state_ratio = 1.2";
     let whole = ["strength_reduction.factor=1.0", "initial.k0=0.5"];
     let with = |text: &str| set(FULL, &[&whole[..], &[&format!("material.clay={{ {keys}, {text} }}")]].concat());
     let case = with("ocr = 2").expect("a valid case");
@@ -233,8 +234,8 @@ fn cam_clay_and_its_start() {
     for (text, reported) in [
         ("poisson = 0.3", "duplicate key"),
         ("k0 = 0.5", "missing; model \\\"modified-cam-clay\\\" needs it, or ocr"),
-        ("ocr = 0.9", "allowed: ocr >= 1"),
-        ("ocr = 2, preconsolidation = 1e5", "only one of"),
+        ("ocr = 0.9", "E0010"),
+        ("ocr = 2, preconsolidation = 1e5", "E0016"),
         ("ocr = 2, cohesion = 1e3", "has no meaning"),
     ] {
         let message = format!("{:?}", with(text).expect_err("refused"));
@@ -246,10 +247,10 @@ fn cam_clay_and_its_start() {
         let message = format!("{:?}", set(&text, &[&[clay.as_str()], sets].concat()).expect_err("refused"));
         assert!(message.contains(reported), "{sets:?}: {message}");
     };
-    refused(&["material.clay.lambda_star=0.02"], "lambda_star > kappa_star = 0.02");
-    refused(&["initial.gravity=elastic"], "no state without stress: give [initial] k0");
-    refused(&["strength_reduction.factor=1.25"], "would grow as its strength falls; give preconsolidation");
-    refused(&["strength_reduction.unloaded=true"], "no state without stress: give [initial] k0");
+    refused(&["material.clay.lambda_star=0.02"], "E0307");
+    refused(&["initial.gravity=elastic"], "E0318");
+    refused(&["strength_reduction.factor=1.25"], "E0312");
+    refused(&["strength_reduction.unloaded=true"], "E0318");
     // Under the weight of others, but with none of its own.
     let weightless = "material.soil={ young = 1e7, poisson = 0.3, model = \"modified-cam-clay\", kappa_star = 0.02, \
                       lambda_star = 0.1, critical_state_ratio = 1.2, ocr = 2 }";
@@ -257,7 +258,7 @@ fn cam_clay_and_its_start() {
     let fill = "material.fill={ model = \"elastic\", young = 1e7, poisson = 0.3, density = 2e3 }";
     let body = "body.1={ material = \"fill\", box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }, points_per_cell = 3 }";
     let message = format!("{:?}", set(STATIC, &[weightless, fill, body, weight, start]).expect_err("no pressure"));
-    assert!(message.contains("without weight material.soil has no pressure"), "{message}");
+    assert!(message.contains("without weight material.soil has no initial stress"), "{message}");
 }
 
 /// Sensitive clay: what is left of its cohesion at every height, the strain in the law's own measure, and its rate.
@@ -273,11 +274,9 @@ fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate() {
     assert_eq!((numbers[0], numbers[2], numbers[5]), (0.0, 2.2e4, 5.5e3));
     assert!((numbers[6] - 20.0 / 3.0_f64.sqrt()).abs() < 1e-14);
     assert!(clay.over(0.1).is_some() && with("k0 = 0.5").expect("no rate").materials[1].material.over(0.1).is_none());
-    for (text, reported) in [
-        ("rate_parameter = 0.1", "missing; a rate needs both"),
-        ("sensitivity = 0.5", "duplicate key"),
-        ("friction_angle = 10", "has no meaning"),
-    ] {
+    for (text, reported) in
+        [("rate_parameter = 0.1", "E0305"), ("sensitivity = 0.5", "duplicate key"), ("friction_angle = 10", "E0304")]
+    {
         let message = format!("{:?}", with(text).expect_err("refused"));
         assert!(message.contains(reported), "{text}: {message}");
     }
@@ -303,5 +302,5 @@ fn granular_flow_has_its_numbers() {
     let flow = with("0.64").expect("a valid case").materials[1].material.clone();
     assert_eq!(flow.parameters(), [0.38, 0.64, 0.3, 0.002, 2.6e3]);
     let message = format!("{:?}", with("0.3").expect_err("faster is not weaker"));
-    assert!(message.contains("allowed: mu_2 >= mu_s = 0.38"), "{message}");
+    assert!(message.contains("mu_s = 0.38"), "{message}");
 }

@@ -38,7 +38,11 @@ pub(super) struct Actual {
 pub(super) fn read(directory: &Path) -> Result<Actual, Error> {
     let manifest = present(Manifest::read(directory))?.ok_or_else(|| Error::no_run(directory))?;
     if manifest.status == Status::Running {
-        return Err(Error::Usage { reason: format!("the run in {} has not ended", directory.display()) });
+        let reason = format!(
+            "E0857: the run in {} has not ended, so there is nothing to compare with. Wait until it ends.",
+            directory.display()
+        );
+        return Err(Error::Usage { reason });
     }
     let size = |name: &str| manifest.sizes.get(name).copied().unwrap_or(0);
     let bytes = manifest.outputs.iter().filter_map(|output| output.bytes).sum();

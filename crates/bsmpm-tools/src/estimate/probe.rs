@@ -206,7 +206,10 @@ impl Probes<'_> {
                     level.work.steps,
                     run.cpu()
                 ),
-                None => format!("cells {factor} times as large: ended early ({}), of no use", run.outcome.reason),
+                None => format!(
+                    "cells {factor} times as large: not used, because this run ended early ({})",
+                    run.outcome.reason
+                ),
             });
             levels.extend(level);
         }
@@ -227,7 +230,7 @@ impl Probes<'_> {
         let run = self.run("whole", &case.text, &[], self.plan.ranks)?;
         let (work, taken) = (run.work(), run.cpu() - expected.start - expected.frame * frames.saturating_sub(1) as f64);
         if run.outcome.state != RunState::Done || work.units() <= 0.0 {
-            report(&format!("the whole case: ended early ({}), of no use", run.outcome.reason));
+            report(&format!("the whole case: not used, because this run ended early ({})", run.outcome.reason));
             return Ok(None);
         }
         report(&format!(

@@ -82,7 +82,11 @@ impl LimitLoadReport {
         for (order, outcome) in orders.iter().zip(outcomes) {
             let found = loads(outcome);
             if found.is_empty() {
-                let reason = format!("{} has no limit load in its run.json", order.name);
+                let reason = format!(
+                    "E0855: the record of run `{}` has no limit load. An earlier version made it. Delete its directory, and start \
+                     again.",
+                    order.name
+                );
                 return Err(Error::Missing { reason });
             }
             grids.extend(found.iter().map(|load| GridLoad::of(load, order, outcome)));
@@ -194,19 +198,23 @@ impl GridLoad {
     fn doubt(&self) -> String {
         let Self { name, load, change, .. } = self;
         let cell = number(self.cell);
-        if *load <= 0.0 {
-            return format!(
-                "No limit load of {name} with cells of {cell} m: the ground does not resist it. Check that it touches the ground and \
-                 moves towards it.\n"
-            );
-        }
-        let remedy = if *change > 0.0 { "Increase the prescribed displacement." } else { "Increase analysis.steps." };
         let changed = 100.0 * change;
-        format!(
-            "No limit load of {name} with cells of {cell} m: its load changed by {changed:+.1} % over the last quarter of the \
-             displacement. \
-             {remedy}\n"
-        )
+        let warning = match (*load <= 0.0, *change > 0.0) {
+            (true, _) => format!(
+                "W0850: `{name}` meets no resistance on cells of {cell} m, so there is no limit load. Check that it touches the \
+                 ground and moves towards it."
+            ),
+            (_, true) => format!(
+                "W0851: the load of `{name}` still rises on cells of {cell} m, by {changed:.1} % over the last quarter of the \
+                 displacement (at most 1 %). Increase the prescribed displacement."
+            ),
+            _ => format!(
+                "W0852: the load of `{name}` falls on cells of {cell} m, by {:.1} % over the last quarter of the displacement (at \
+                 most 1 %). Increase analysis.steps.",
+                -changed
+            ),
+        };
+        headed(&warning, "warning") + "\n"
     }
 }
 

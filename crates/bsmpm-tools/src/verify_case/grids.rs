@@ -39,7 +39,7 @@ impl Grids {
         }
         if !errors.is_empty() {
             errors.push(
-                "note: a grid of other cells must fill the same box; --refine-only, --ratio or --cells choose others"
+                "note: cells of each of the three sizes must fill the grid. Choose others with --refine-only, --ratio or --cells."
                     .into(),
             );
             return Err(Error::BadCase { path: path.clone(), errors });
@@ -48,7 +48,10 @@ impl Grids {
         let sizes = [orders[0].cell(), orders[1].cell(), orders[2].cell()];
         let ratios = [sizes[1] / sizes[0], sizes[2] / sizes[1]];
         if ratios.iter().any(|ratio| !(LEAST..=MOST).contains(ratio)) {
-            let reason = format!("cells of {sizes:?} m: each must be {LEAST} to {MOST} times the next finer one");
+            let reason = format!(
+                "E0858: each of the cells {sizes:?} m must be {LEAST} to {MOST} times as large as the next finer one. Choose \
+                 others with --cells or --ratio."
+            );
             return Err(Error::Usage { reason });
         }
         Ok(Self { orders, sizes, own })
@@ -66,20 +69,27 @@ impl VerifyArguments {
             return if count == 3 {
                 Ok(cells.iter().map(of).collect())
             } else {
-                usage(format!("--cells: three are needed, found {count}"))
+                usage(format!(
+                    "E0859: --cells gives {count} sizes, but three are needed. Give three, such as 0.4,0.2,0.1."
+                ))
             };
         }
         let [x, y] = &own.grid.axes[..] else {
-            return usage("of a solid --cells gives the three sizes".to_owned());
+            return usage(
+                "E0860: in 3-D the three grids do not follow from a ratio. Give their cells with --cells.".to_owned(),
+            );
         };
         let graded = is_graded(own);
         if !(LEAST..=MOST).contains(&self.ratio) {
-            return usage(format!("--ratio {}: allowed is {LEAST} to {MOST}", self.ratio));
+            return usage(format!(
+                "E0861: --ratio {} is out of range. Use a ratio from {LEAST} to {MOST}.",
+                self.ratio
+            ));
         }
         if graded && self.ratio.fract() != 0.0 {
             return usage(format!(
-                "--ratio {}: cells of several sizes can be divided by whole numbers only; --cells takes \
-                 equal ones",
+                "E0862: --ratio {} is not a whole number, and the cells of this grid have several sizes. Use a whole number, or equal \
+                 cells with --cells.",
                 self.ratio
             ));
         }

@@ -54,7 +54,9 @@ impl VerifyReport {
     pub fn of(arguments: &VerifyArguments, grids: &Grids, outcomes: &[Outcome]) -> Result<Self, Error> {
         let histories: Vec<&Columns> = outcomes.iter().filter_map(|outcome| outcome.history.as_ref()).collect();
         let [fine, middle, coarse] = histories[..] else {
-            return Err(Error::Usage { reason: "a run has left no history: the case needs a [[history]]".to_owned() });
+            let reason =
+                "E0863: the case records nothing that could be compared between grids. Add a [[history]].".to_owned();
+            return Err(Error::Usage { reason });
         };
         let mut rows = Vec::new();
         for time in arguments.at.iter().copied().map(Some).chain([None]) {
@@ -154,9 +156,7 @@ fn verdict(index: &Index, degree: usize) -> String {
     let off = index.ratio.is_some_and(|ratio| (ratio - 1.0).abs() > NEAR);
     match (index.course, index.order) {
         (ConvergenceType::Unchanged, _) => "does not depend on the grid".to_owned(),
-        (ConvergenceType::Diverging, _) => {
-            "DIVERGES: the finer the grids, the larger the differences; no band".to_owned()
-        }
+        (ConvergenceType::Diverging, _) => "DIVERGES: differences grow on finer grids, so there is no band".to_owned(),
         (ConvergenceType::OscillatoryDiverging, _) => "OSCILLATES AND DIVERGES: no band".to_owned(),
         (ConvergenceType::Oscillatory, _) => {
             "oscillates: the band is a guess, and there is no extrapolated value".to_owned()
@@ -173,7 +173,7 @@ fn verdict(index: &Index, degree: usize) -> String {
             "not asymptotic: the bands of both pairs of grids do not agree (GCI ratio)".to_owned()
         }
         (ConvergenceType::Monotone, Some(_)) => "converges".to_owned(),
-        (ConvergenceType::Monotone, None) => "differences too uneven for an order; no band".to_owned(),
+        (ConvergenceType::Monotone, None) => "no order: the differences are too irregular for a band".to_owned(),
     }
 }
 

@@ -33,7 +33,7 @@ pub fn stretched(per_cell: usize, stretch: f64) -> Found {
 /// p/c of the coarse footing at z/B = 0.1 with so many points a cell and axis; or a warning that they are too few.
 pub fn footing(per_cell: usize) -> Found {
     let run = Run::of(&Footing { per_cell, ..Footing::default() }.text(), 1, &[]);
-    run.found_or_warned("too coarsely", |run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))
+    run.found_or_warned("W0210", |run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))
 }
 
 /// The way of the collapse's front with one point a cell over that with four.
@@ -41,7 +41,7 @@ pub fn collapse() -> Found {
     let run = |per_cell: usize| Run::of(&Collapse { per_cell, ..Collapse::default() }.text(), 1, &[]);
     let way = |run: &Run, per_cell: f64| run.last("runout") - 0.2 + 0.005 / per_cell;
     let reference = way(&run(2), 2.0);
-    run(1).found_or_warned("too coarsely", |run| way(run, 1.0) / reference)
+    run(1).found_or_warned("W0210", |run| way(run, 1.0) / reference)
 }
 
 /// A column of four cells under a small weight with n x n points a cell: mean error of its stress, and seconds a point.

@@ -109,7 +109,7 @@ pub fn origin(origin: f64) -> Found {
     let moved = |run: &Run| run.frame().real("displacement", 3).expect("displacements").to_vec();
     let reference = moved(&Run::of(&text(0.0), 1, &[]));
     let run = Run::of(&text(origin), 1, &[]);
-    run.found_or_warned("resolve", |run| relative(&moved(run), &reference))
+    run.found_or_warned("W0208", |run| relative(&moved(run), &reference))
 }
 
 /// A block that flies through 20 m of cells, an eighth of a metre a step, so that half of its points stand on knots

@@ -113,10 +113,13 @@ fn the_choice_for_flow_is_noted_and_refused_without_inertia() {
     let scratch = Scratch::with_case(DAM_BREAK);
     let noted = scratch.direct(&["case.toml", "--check"]).expect(0);
     let said = noted.said();
-    assert!(said.contains("analysis.wall_velocity") && !said.contains("Add quantity = \"runout\""), "{said}");
+    assert!(
+        said.contains("analysis.wall_velocity") && !said.contains("quantity = \"runout\" with percentile"),
+        "{said}"
+    );
     scratch.write("front.toml", changed(DAM_BREAK, "percentile = 99\n", ""));
     let front = scratch.direct(&["front.toml", "--check"]).expect(0).said();
-    assert!(front.contains("Add quantity = \"runout\""), "{front}");
+    assert!(front.contains("quantity = \"runout\" with percentile"), "{front}");
     let sand = "model = \"mohr-coulomb\"\nfriction_angle = 20\ncohesion = 0.0\nyoung = \"5 MPa\"\npoisson = 0.3\ndensity = 1500\n";
     let (before, after) = DAM_BREAK.split_once("model   = \"mu-i\"").unwrap();
     let after = after.split_once("grain_density = 2500\n").unwrap().1;

@@ -102,8 +102,8 @@ fn all_segments(case: &Case) -> Vec<Segment<'_>> {
     footing.chain(prescribed).chain(tractions).collect()
 }
 
-/// Edges of rectangular plates and loads of a solid beyond which the surface goes on; of a disc what it holds too much
-/// is told.
+/// Edges of rectangular plates and loads of a solid beyond which the surface goes on; of a disc there is
+/// a warning.
 pub(super) fn plates(case: &Case, found: &mut FoundLine) {
     let footing = case.footing.iter().map(|footing| (("footing", 0), footing.site, Some(&footing.path)));
     let prescribed = case.prescribed.iter().enumerate();
@@ -119,7 +119,7 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
     for (table, plate, path) in strips.chain(tractions) {
         let name = if table.0 == "footing" { "footing".into() } else { format!("{}.{}", table.0, table.1) };
         if plate.round {
-            path.into_iter().for_each(|_| doubt_rim(&name, found));
+            path.into_iter().for_each(|_| doubt_rim(&format!("`{name}`"), found));
             continue;
         }
         let segment = Segment { name, table, ends: [plate.lower, plate.upper], path };
@@ -132,8 +132,8 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
 /// Warns that a round rim follows no grid line.
 fn doubt_rim(name: &str, found: &mut FoundLine) {
     let doubt = format!(
-        "{name}: its rim is round and lies inside cells: it pushes what the splines reach, up to a cell more than its radius, \
-         and its force is high by as much; compare two cell sizes"
+        "W0224: {name} has a round edge inside cells. Up to a cell more than its radius is loaded, and its force is \
+         too large. Compare runs with two cell sizes."
     );
     found.doubts.insert(name.to_owned(), doubt);
 }
@@ -241,9 +241,18 @@ fn rims(case: &Case, rigid: &Rigid, about: [f64; 2], corners: &[[f64; 2]], found
         let has_soil = |[x, y]: [f64; 2]| has_material(case, [x, y, from[1]], 2);
         let is_at = |shift: f64| ring(about, radius + shift * BEYOND * cell).any(has_soil);
         if pushes(rigid, 2) && is_at(-1.0) && is_at(1.0) {
-            doubt_rim(&format!("rigid `{}`", rigid.name), found);
+            doubt_rim(&format!("rigid body `{}`", rigid.name), found);
         }
     }
+}
+
+/// Warns that the end of something lies inside a cell.
+fn inside_cell(name: &str, end: &str, axis: usize, at: f64) -> String {
+    format!(
+        "W0225: the {end} of {name} at {} = {at} m lies inside a cell. Up to a cell more of soil is loaded, and the \
+         force is too large. Put a grid line there (grid.cell or grid.knots).",
+        NAMES[axis]
+    )
 }
 
 /// The line through a corner or an edge of a rigid body.
@@ -252,26 +261,17 @@ fn corner(case: &Case, rigid: &Rigid, of: &FaceEnd, found: &mut FoundLine) {
         return;
     }
     let (axis, at, name) = (&case.grid.axes[of.along], of.edge[0][of.along], &rigid.name);
-    // Measured eight cells wide on undrained clay, against the exact limit load and against that with the lines.
-    let (what, excess) = match case.grid.dims() {
-        2 => ("a corner", "by 19 % in place of 7"),
-        _ => ("an edge", "by 14 %"),
-    };
+    let what = if case.grid.dims() == 2 { "corner" } else { "edge" };
     match grid_line(case, of.along, at - axis.lower()) {
         Some(line) if line == 0 || line == axis.cells() => {}
         Some(line) => {
-            let reason = format!("{what} of rigid `{name}`, where strains are singular");
+            let reason = format!("strains are singular at the {what} of rigid body `{name}`");
             found.lines.entry((of.along, line)).or_insert(reason);
         }
         None => {
-            let told = format!(
-                "rigid `{name}`: {what} at {} = {at} lies inside a cell: it pushes what the splines reach, up to a cell more \
-                 than its width, and its force is high by as much (on clay {excess}, eight cells wide); put a grid line \
-                 there, by grid.cell or [grid.knots]",
-                NAMES[of.along]
-            );
-            found.inside.push(format!("rigid `{name}`"));
-            found.doubts.entry(format!("rigid {name}")).or_insert(told);
+            let doubt = inside_cell(&format!("rigid body `{name}`"), what, of.along, at);
+            found.inside.push(format!("rigid body `{name}`"));
+            found.doubts.entry(format!("rigid {name}")).or_insert(doubt);
         }
     }
 }
@@ -290,7 +290,7 @@ fn end(
     if !has_material(case, beyond, normal) {
         return;
     }
-    let reason = format!("an end of {name}, where strains are singular");
+    let reason = format!("strains are singular at the end of `{name}`");
     let cell = axis.cell(axis.first_cell(|i| axis.breakpoint(i + 1) >= at[along] - axis.lower()).min(axis.cells() - 1));
     match grid_line(case, along, at[along] - axis.lower()) {
         Some(line) if line == 0 || line == axis.cells() => {}
@@ -303,16 +303,16 @@ fn end(
         }
         _ if segment.path.is_none() => {}
         Some(_) => {
-            let told = format!(
-                "{name}: it moves along itself, and its ends leave the grid lines on which they would be sharp: it holds what \
-                 the splines reach, up to a cell more than its length, and its force is high by as much"
+            let doubt = format!(
+                "W0226: the ends of `{name}` leave the grid lines, as it moves along its own length. Up to a cell more \
+                 of soil is loaded, and the force is too large. Use smaller cells."
             );
-            found.doubts.entry(name.clone()).or_insert(told);
+            found.doubts.entry(name.clone()).or_insert(doubt);
         }
         None if outward.abs() < cell => {
             let message = format!(
-                "the strip is {} m long and ends inside a cell of {cell} m: it would hold that cell and its neighbours; take \
-                 smaller cells, or a grid line at {} = {}",
+                "E0235: the segment is {} m long and ends inside a cell of {cell} m. It would restrain whole cells. \
+                 Use smaller cells, or put a grid line at {} = {} m.",
                 outward.abs(),
                 NAMES[along],
                 at[along]
@@ -320,13 +320,11 @@ fn end(
             found.narrow.push((segment.table.0, segment.table.1, message));
         }
         None => {
-            let told = format!(
-                "{name}: the end at {} = {} lies inside a cell: the strip holds what the splines reach, up to a cell more than \
-                 its length, and its force is high by as much; put a grid line there, by grid.cell or [grid.knots]",
-                NAMES[along], at[along]
-            );
             found.inside.push(name.clone());
-            found.doubts.entry(name.clone()).or_insert(told);
+            found
+                .doubts
+                .entry(name.clone())
+                .or_insert_with(|| inside_cell(&format!("`{name}`"), "end", along, at[along]));
         }
     }
 }
@@ -349,7 +347,7 @@ fn wall(case: &Case, segment: &Segment<'_>, normal: usize, found: &mut FoundLine
         case.bodies.iter().any(|body| is_in(body, &case.grid, middle))
     };
     if beside(-1.0) && beside(1.0) {
-        let reason = format!("{} holds material on both sides of it", segment.name);
+        let reason = format!("`{}` restrains the soil on both sides", segment.name);
         found.lines.entry((normal, line)).or_insert(reason);
     }
 }

@@ -1,6 +1,6 @@
 //! C0 lines of a solid: planes of the grid on which bodies of unlike stiffness or density meet.
 
-use super::{BESIDE, FoundLine, ROUNDING, UNLIKE, differ, doubt, grid_line, told_to_meet};
+use super::{BESIDE, FoundLine, ROUNDING, UNLIKE, differ, doubt, grid_line, interface_of};
 use crate::case::{Body, Case};
 
 /// Rays along an axis: so many a cell across each of the others, at most so many.
@@ -31,9 +31,8 @@ pub(super) fn interfaces(case: &Case, found: &mut FoundLine) {
             if meetings.is_empty() && ratios[0].max(ratios[1]) >= UNLIKE {
                 let [a, b] = [a, b].map(|body| &case.materials[body.material].name);
                 let doubt = format!(
-                    "material.{a} and material.{b}: bodies of them are less than a cell apart, and where they meet was not \
-                     found: if they do inside cells, stress there is wrong by tens of per cent within about three cells; \
-                     repeat breakpoints by knots"
+                    "W0223: bodies of material.{a} and material.{b} are less than a cell apart, but no interface was \
+                     found. Stresses there may be wrong. Let them share a plane, and put a grid line on it."
                 );
                 found.doubts.entry(format!("{a} {b} apart")).or_insert(doubt);
             }
@@ -50,7 +49,7 @@ fn note(case: &Case, bodies: [&Body; 2], meeting: &Meeting, found: &mut FoundLin
     let [a, b] = bodies.map(|body| &case.materials[body.material]);
     let line = grid_line(case, axis, at[axis] - case.grid.axes[axis].lower()).filter(|_| flat);
     if let Some(line) = line {
-        found.lines.entry((axis, line)).or_insert_with(|| told_to_meet(a, b));
+        found.lines.entry((axis, line)).or_insert_with(|| interface_of(a, b));
     }
     if let Some(doubt) = doubt([a, b], (line.is_some(), case.stabilisation.averages()), (&at, ratios)) {
         found.doubts.entry(format!("{} {} {}", a.name, b.name, line.is_some())).or_insert(doubt);
@@ -92,7 +91,7 @@ fn meetings(case: &Case, bodies: [&Body; 2], [lower, upper]: [[f64; 3]; 2]) -> V
 }
 
 /// The meeting at a place: on a plane if both bodies are on their sides of it beside the place, too; none where it is
-/// not told as one of them ends there.
+/// not known as one of them ends there.
 fn meeting(axis: usize, at: [f64; 3], shortest: f64, inside: impl Fn([f64; 3]) -> Option<usize>) -> Option<Meeting> {
     let sides = |at: [f64; 3]| {
         [-1.0, 1.0].map(|side| {

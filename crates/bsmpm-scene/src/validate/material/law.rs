@@ -75,11 +75,14 @@ pub(super) fn law(
     let all = all_keys();
     let unused = all.iter().filter(|key| !required.contains(key) && !known.contains(key));
     for key in unused.filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
-        record.error(key, format!("has no meaning in model \"{model}\""), report);
+        let message =
+            format!("E0304: the model \"{model}\" has no such parameter. Remove `{key}`, or choose another model.");
+        record.error(key, message, report);
         whole = false;
     }
     for key in required.iter().filter(|key| !record.gives(key)) {
-        report.error(record.origin, &record.path_of(key), format!("missing; model \"{model}\" needs it"));
+        let message = format!("E0305: the model \"{model}\" needs this parameter. Add `{key}`.");
+        report.error(record.origin, &record.path_of(key), message);
         whole = false;
     }
     if !whole {
@@ -108,7 +111,11 @@ pub(super) fn law(
     warn_of_match(record, &parameters, geometry, report);
     let [slow, fast] = ["mu_s", "mu_2"].map(|key| parameters.of(key).value);
     if model == LawName::MuI && slow > fast {
-        record.error("mu_2", format!("{fast} is out of range; allowed: mu_2 >= mu_s = {slow}"), report);
+        let message = format!(
+            "E0306: the friction coefficient at large rates ({fast}) is below that at rest, mu_s = {slow}. Set `mu_2` \
+             to at least `mu_s`."
+        );
+        record.error("mu_2", message, report);
         return None;
     }
     if model == LawName::CamClay {
@@ -138,9 +145,8 @@ fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, re
         let limit = 1.5 * 0.5 * young.at(y) / (1.0 + poisson);
         if rate > limit {
             report.warn(format!(
-                "{}: the cohesion falls by up to {rate:.3e} Pa per plastic strain, faster than stress falls where the \
-                 material unloads ({limit:.3e} Pa): it drops at once, and the work of a band is too large; use smaller \
-                 cells or a larger softening_strain",
+                "W0305: {}: the cohesion falls by {rate:.3e} Pa per unit of plastic strain (limit {limit:.3e} Pa), so \
+                 it drops at once. Use smaller cells, or a larger `softening_strain`.",
                 record.path
             ));
             return;
@@ -159,7 +165,10 @@ fn remould(record: &Record, law: &mut Parameters, report: &mut Report<'_>) -> Op
     strain.value /= 3.0_f64.sqrt();
     if record.gives("rate_parameter") != record.gives("reference_rate") {
         let missing = if record.gives("rate_parameter") { "reference_rate" } else { "rate_parameter" };
-        report.error(record.origin, &record.path_of(missing), "missing; a rate needs both its parameter and reference");
+        let message = format!(
+            "E0305: a rate-dependent strength needs both `rate_parameter` and `reference_rate`. Add `{missing}`."
+        );
+        report.error(record.origin, &record.path_of(missing), message);
         return None;
     }
     Some(())
@@ -170,15 +179,17 @@ fn star(record: &Record, values: &mut Vec<(&'static str, Profile)>, report: &mut
     const SLOPES: [[&str; 2]; 2] = [["kappa_star", "kappa"], ["lambda_star", "lambda"]];
     let of_volume = SLOPES.into_iter().find(|[_, slope]| record.gives(slope));
     if let Some([_, slope]) = of_volume.filter(|_| !record.gives("void_ratio")) {
-        let message = "is the slope of the specific volume v over ln p' and needs the void ratio at the start. Give void_ratio \
-                       = e0 too, or kappa_star and lambda_star, the slopes of ln v: kappa_star = kappa/(1 + e0). Earlier versions \
-                       read kappa and lambda as these.";
+        let message = "E0314: the slope of v over ln p' needs the initial void ratio. Add `void_ratio`, or use \
+                       `kappa_star` = kappa/(1 + e0) and `lambda_star` = lambda/(1 + e0).";
         record.error(slope, message, report);
         return None;
     }
     for [starred, slope] in SLOPES {
         if !record.gives(starred) && !record.gives(slope) {
-            let message = format!("missing; model \"modified-cam-clay\" needs it, or {slope} and void_ratio");
+            let message = format!(
+                "E0305: the model \"modified-cam-clay\" needs this slope. Add `{starred}`, or `{slope}` and \
+                 `void_ratio`."
+            );
             report.error(record.origin, &record.path_of(starred), message);
             return None;
         }
@@ -196,15 +207,16 @@ fn star(record: &Record, values: &mut Vec<(&'static str, Profile)>, report: &mut
 fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) -> Option<()> {
     let [kappa, lambda] = ["kappa_star", "lambda_star"].map(|key| law.of(key).value);
     if lambda <= kappa {
-        record.error(
-            "lambda_star",
-            format!("{lambda} is out of range; allowed: lambda_star > kappa_star = {kappa}"),
-            report,
+        let message = format!(
+            "E0307: the slope of the normal compression line ({lambda}) does not exceed that of unloading, kappa_star \
+             = {kappa}. Correct `lambda_star` or `kappa_star`."
         );
+        record.error("lambda_star", message, report);
         return None;
     }
     if !record.gives("preconsolidation") && !record.gives("ocr") {
-        let message = "missing; model \"modified-cam-clay\" needs it, or ocr";
+        let message = "E0305: the model \"modified-cam-clay\" needs the size of its initial yield surface. Add \
+                       `preconsolidation` or `ocr`.";
         report.error(record.origin, &record.path_of("preconsolidation"), message);
         return None;
     }
@@ -214,15 +226,15 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     report.note(
         &record.path,
         format!(
-            "young and poisson hold at p = {at:.6} Pa; below {:.6} Pa Poisson's ratio is negative",
+            "young and poisson are those at p = {at:.6} Pa; Poisson's ratio is negative below p = {:.6} Pa",
             at * (1.0 - 2.0 * poisson) / (1.0 + poisson)
         ),
         "K = p (1 - kappa*)/kappa*, G constant",
     );
     if record.number("ocr").is_some_and(|ocr| ocr > 2.0) {
         report.warn(format!(
-            "{}: with ocr > 2 it softens in shear and dilates: results depend on the cells, for which it has no band_width, \
-             and were not verified with a stabilisation",
+            "W0306: {}: the clay softens and dilates in shear, because ocr exceeds 2. Results depend on the cell \
+             size. Compare two sizes of `grid.cell`.",
             record.path
         ));
     }
@@ -239,15 +251,15 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
     let falls = ["friction_angle", "cohesion"].map(|key| (law.of(key), law.of(&format!("residual_{key}"))));
     let falls = falls.into_iter().any(|(first, last)| first.value > last.value);
     if !falls {
-        report.note(&record.path, "hardens", "no residual strength is below the first one: shear does not localise");
+        report.note(&record.path, "hardens", "no residual strength is below its peak, so shear bands do not form");
     }
     let Some(width) = record.number("band_width") else {
         if !falls {
             return Some(());
         }
         report.warn(format!(
-            "{}: what softens localises in bands as wide as two cells, so that results depend on the cells; give band_width, \
-             or compare two cell sizes",
+            "W0307: {}: the material softens, and shear bands become two cells wide, so results depend on the cell \
+             size. Add `band_width`, or compare two cell sizes.",
             record.path
         ));
         return Some(());
@@ -259,7 +271,8 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
     );
     if longest > SQUARE * shortest {
         let message = format!(
-            "needs square cells of one size, and these measure {shortest} to {longest} m: give grid.cell one number"
+            "E0316: a shear band width needs cells of one size, and these are {shortest} to {longest} m long. Give \
+             `grid.cell` one number."
         );
         record.error("band_width", message, report);
         return None;
@@ -273,7 +286,7 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
             report.note(
                 record.path_of(key),
                 number.value.to_string(),
-                format!("{of_band} of a band {width} m wide, which in cells of {longest} m is {smeared} m wide"),
+                format!("{of_band} in a band of {width} m, which is {smeared} m wide in cells of {longest} m"),
             );
         }
     }
@@ -287,6 +300,14 @@ fn all_keys() -> Vec<&'static str> {
     all.sort_unstable();
     all.dedup();
     all
+}
+
+/// The error of a dilation angle above the friction angle, deg.
+fn dilates_too_much(dilation: f64, friction: f64) -> String {
+    format!(
+        "E0308: the dilation angle ({dilation} deg) exceeds the friction angle ({friction} deg). Reduce the dilation \
+         angle to the friction angle or less."
+    )
 }
 
 /// What laws with friction ask for beyond the ranges of their keys; `None` after an error.
@@ -303,32 +324,36 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     let ends = layer.map_or([0.0, 0.0], |layer| [layer.heights.start, layer.heights.end]);
     if let Some(y) = ends.into_iter().find(|&y| last[0].at(y) > last[1].at(y)) {
         let [dilation, friction] = last.map(|profile| profile.at(y));
-        let message = format!(
-            "{dilation} is out of range; allowed: 0 <= residual_dilation_angle <= residual_friction_angle = {friction}"
-        );
-        record.error("residual_dilation_angle", message, report);
+        record.error("residual_dilation_angle", dilates_too_much(dilation, friction), report);
         return None;
     }
     if dilation.1 > friction.1 {
-        let message =
-            format!("{} is out of range; allowed: 0 <= dilation_angle <= friction_angle = {}", dilation.1, friction.1);
-        record.error("dilation_angle", message, report);
+        record.error("dilation_angle", dilates_too_much(dilation.1, friction.1), report);
         return None;
     }
     if dilation.1 > friction.0 {
         let path = record.path_of("dilation_angle");
-        report.warn(format!("{path}: {} is above the friction angle in places, and lowered to it there", dilation.1));
+        report.warn(format!(
+            "W0308: {path}: the dilation angle ({} deg) exceeds the friction angle at some heights and is reduced to \
+             it there. Vary both with height.",
+            dilation.1
+        ));
     }
     if friction.1 == 0.0 && cohesion.1 == 0.0 {
-        report.warn(format!("{}: friction and cohesion are both 0: the material has no strength", record.path));
+        report.warn(format!(
+            "W0309: {}: friction angle and cohesion are both 0, so the material has no shear strength. Correct \
+             `friction_angle` or `cohesion`.",
+            record.path
+        ));
     }
     if !matches!(law.model, LawName::Tresca | LawName::SensitiveClay) && !record.gives("dilation_angle") {
-        report.note(record.path_of("dilation_angle"), "0.0", "default: plastic flow without change of volume");
+        report.note(record.path_of("dilation_angle"), "0.0", "default: plastic flow without volume change");
     }
     // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi
     // until it has closed, and without friction there is no apex.
     if record.word("separation") == Some(Separation::Closing) && (friction.0 <= 0.0 || cohesion.1 > 0.0) {
-        let message = "\"gap\" needs friction and no cohesion: a gap is what opens where the stress is zero";
+        let message = "E0317: \"gap\" needs a friction angle above 0 and no cohesion, because a gap opens at zero \
+                       stress only. Set cohesion = 0, or remove `separation`.";
         record.error("separation", message, report);
     }
     Some(())
@@ -344,10 +369,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
         if !record.gives("fit") {
             report.warn(format!(
-                "{}: not given: the cone is matched in plane strain, which this is not, and has {:.1} % of mohr-coulomb's \
-                 strength in triaxial compression, {:.1} % in extension, at the same mean stress; give \"outer\" (all of \
-                 it in compression), \"inner\" (all in extension) or \"plane-strain\" (nowhere more); use mohr-coulomb \
-                 where that is meant",
+                "W0310: {}: the default cone is for plane strain and has only {:.1} % of the Mohr-Coulomb strength in \
+                 compression, {:.1} % in extension. Use fit = \"outer\" or \"inner\".",
                 record.path_of("fit"),
                 100.0 * cone.strength_over(Match::Outer),
                 100.0 * cone.strength_over(Match::Inner)
@@ -358,8 +381,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
     let ratio = cone.strength_in_plane_strain();
     if (ratio - 1.0).abs() > 0.005 {
         report.warn(format!(
-            "{}: in plane strain this cone has {:.1} % of mohr-coulomb's strength (with fit = \"plane-strain\" and \
-             dilation_angle = friction_angle it has all); use mohr-coulomb where that is meant",
+            "W0311: {}: in plane strain this Drucker-Prager cone has {:.1} % of the Mohr-Coulomb strength. If this is \
+             not intended, use model = \"mohr-coulomb\".",
             record.path,
             100.0 * ratio
         ));

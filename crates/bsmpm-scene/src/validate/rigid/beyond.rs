@@ -13,21 +13,23 @@ const TOUCHING: f64 = 0.1;
 pub(super) fn check(case: &Case, rigid: &Rigid, record: &Record, report: &mut Report<'_>) {
     let key = record.path_of(shape::key(record));
     if stays_outside(case, rigid) {
-        report.warn(format!("{key}: it lies outside of the grid and does not come into it: it does nothing"));
+        report.warn(format!(
+            "W0417: {key}: the body lies outside the grid and never enters it. It has no effect. Move it, or enlarge the grid."
+        ));
     } else if let Some((face, distance)) = touched(case, rigid) {
         report.warn(format!(
-            "{key}: it lies {distance:.3} m from the face {} of the grid at the start and is pushed towards it. Faces \
-             do not stop rigid bodies: it leaves the grid, and no soil acts on it there. Enlarge the grid there.",
+            "W0418: {key}: the body starts {distance:.3} m from boundary `{}` and is driven towards it. Boundaries do not stop \
+             rigid bodies, so it leaves the grid. Enlarge the grid there.",
             face.side(case.geometry)
         ));
     } else if rigid.free.contains(&true)
         && let Some(face) = cut(case, rigid)
     {
         report.warn(format!(
-            "{key}: it lies on both sides of {}, a plane of symmetry if the ground goes on alike there: its mass, force and \
-             inertia are those of the whole body, and bear on this side alone; give half of them, and `free` only along \
-             that face",
-            face.side(case.geometry)
+            "W0419: {key}: the symmetry plane `{}` cuts this free body, but its whole mass and force act on the modelled half. \
+             Give half of both, and free = [\"{}\"] only.",
+            face.side(case.geometry),
+            ["y", "x"][face.axis]
         ));
     }
 }

@@ -9,10 +9,10 @@ use crate::report::Report;
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::tensor::Vector;
 
-/// Keys that only a plane knows.
+/// Shapes that only a plane knows.
+const FLAT_SHAPES: &[&str] = &["polygon", "circle"];
+/// Keys of motions that only a plane knows.
 const IN_A_PLANE: &[&str] = &[
-    "polygon",
-    "circle",
     "rotation",
     "about",
     "free",
@@ -37,9 +37,14 @@ pub(super) fn read(
     factor: Option<f64>,
     report: &mut Report<'_>,
 ) -> Option<Rigid> {
+    if let Some(key) = FLAT_SHAPES.iter().find(|key| record.gives(key)) {
+        let message = "E0432: this shape is not available in 3-D. Use `box`, `sphere`, `revolve` or `terrain`.";
+        record.error(key, message, report);
+        return None;
+    }
     if let Some(key) = IN_A_PLANE.iter().find(|key| record.gives(key)) {
-        let message = "is of a plane: a rigid body of a solid is a box, sphere, revolve or terrain that rests, or moves by \
-                       displacement, velocity or path without turning";
+        let message = "E0433: this key is not available in 3-D, where a rigid body only translates as prescribed. Use \
+                       `displacement`, `velocity` or `path`.";
         record.error(key, message, report);
         return None;
     }
@@ -84,11 +89,19 @@ fn shape(record: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
 /// A polygon about a vertical, with its mirror image where it reaches that.
 fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
     let RigidShape::Polygon(mut corners) = super::shape::rigid(shape, report)? else {
-        shape.error("circle", "not available for a rigid body: give a polygon, or a sphere", report);
+        shape.error(
+            "circle",
+            "E0432: a circle cannot be revolved into a rigid body. Use `polygon`, or `sphere`.",
+            report,
+        );
         return None;
     };
     if let Some(corner) = corners.iter().find(|corner| corner[0] < 0.0) {
-        shape.error("polygon", format!("it reaches to the radius {}; allowed: radius >= 0", corner[0]), report);
+        let message = format!(
+            "E0434: a corner has the radius {} m. Radii are measured from the axis, and cannot be negative. Move the polygon.",
+            corner[0]
+        );
+        shape.error("polygon", message, report);
         return None;
     }
     let count = corners.len();
@@ -145,7 +158,8 @@ pub(super) fn check(
     };
     if (0..2).any(outside) {
         report.warn(format!(
-            "{}: the raster ends inside the grid; beyond it the surface is taken to go on level",
+            "W0420: {}: the raster of heights ends inside the grid. The surface continues horizontally from there. Extend the \
+             raster to the edges of the grid.",
             record.path_of(key)
         ));
     }

@@ -9,7 +9,7 @@ use crate::region::{Raster, Region, Section, SolidShape, Surface, Volume, left_o
 use crate::report::Report;
 use crate::words::{Axis, Geometry};
 
-/// Factor of the volumes in cells that are cut, less 1, above which a body is warned of. At 2 or 3 points along an axis
+/// Factor of the volumes in cells that are cut, less 1, above which there is a warning. At 2 or 3 points along an axis
 /// walls of a fifth of a cell have .04 at most, of a hundredth .5 to .9; spheres of any size .06.
 const SCALED: f64 = 0.1;
 
@@ -35,8 +35,8 @@ pub(super) fn region(
         beyond.note(body, Geometry::Solid, report);
     }
     let outside = solid_bounds(&whole, &cut).into_iter().find_map(|corner| place::beyond(grid, corner));
-    if let Some(message) = outside {
-        body.error(key, message + &reach(&whole), report);
+    if let Some(outside) = outside {
+        body.error(key, reach(&whole).unwrap_or_else(|| outside.into()), report);
         return None;
     }
     let lower = grid.lower();
@@ -46,8 +46,8 @@ pub(super) fn region(
         Ok(volume) => {
             if (volume.scale() - 1.0).abs() > SCALED {
                 report.warn(format!(
-                    "{}: it is too thin for its points: volumes where it cuts cells were multiplied by {:.2} to make \
-                     up its own, so that they lie unevenly; take cells of at most five times its thinnest part",
+                    "W0214: {}: the body is thin for these cells, so its volume in cut cells was scaled by {:.2}. \
+                     Stresses there are inaccurate. Use cells of at most five times its thickness.",
                     body.path_of(key),
                     volume.scale()
                 ));
@@ -61,14 +61,14 @@ pub(super) fn region(
     }
 }
 
-/// Of a surface how far it reaches: files of it often have another unit.
-fn reach(shape: &SolidShape) -> String {
-    let SolidShape::Surface(surface) = shape else { return String::new() };
+/// Of a surface beyond the grid how far it reaches: files of it often have another unit.
+fn reach(shape: &SolidShape) -> Option<String> {
+    let SolidShape::Surface(surface) = shape else { return None };
     let [[x, y, z], [to_x, to_y, to_z]] = surface.bounds();
-    format!(
-        "; its triangles reach from [{x:.3}, {y:.3}, {z:.3}] to [{to_x:.3}, {to_y:.3}, {to_z:.3}] m: numbers are metres \
-         times scale, and scale = 0.001 takes millimetres"
-    )
+    Some(format!(
+        "E0202: the triangles reach from [{x:.3}, {y:.3}, {z:.3}] to [{to_x:.3}, {to_y:.3}, {to_z:.3}] m, out of the \
+         grid. Check the unit: scale = 0.001 reads millimetres."
+    ))
 }
 
 /// Whether triangles turn clockwise seen from outside, all in all: the tetrahedra between them and a corner have a
@@ -97,7 +97,10 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         let outline = section(shape, report)?;
         let (along, from, to) = (shape.word::<Axis>("along")?, shape.number("from")?, shape.number("to")?);
         if from >= to {
-            shape.error("to", format!("{to} is not above from = {from}: the body is empty"), report);
+            let message = format!(
+                "E0203: to = {to} m is not above from = {from} m, so the body is empty. Exchange or correct the ends."
+            );
+            shape.error("to", message, report);
             return None;
         }
         let along = [Axis::X, Axis::Y, Axis::Z].iter().position(|axis| *axis == along)?;
@@ -106,7 +109,10 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
     if let Some(shape) = record.record("revolve").filter(|_| record.gives("revolve")) {
         let outline = section(shape, report)?;
         if outline.bounds[0][0] < 0.0 {
-            let message = format!("it reaches to the radius {}; allowed: radius >= 0", outline.bounds[0][0]);
+            let message = format!(
+                "E0224: the outline reaches across the axis of revolution, to the radius {} m. Keep it at 0 or more.",
+                outline.bounds[0][0]
+            );
             shape.error(if shape.gives("circle") { "circle" } else { "polygon" }, message, report);
             return None;
         }
@@ -123,8 +129,8 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
             Ok(surface) => {
                 if is_turned(rows) {
                     report.warn(format!(
-                        "{}: all of them are turned inside out, and taken for what they enclose: of a hole in the \
-                         ground, subtract it",
+                        "W0215: {}: all triangles are inside out, and the volume that they enclose is filled. If they \
+                         are a hole, use `subtract`; otherwise reverse the normals.",
                         shape.path_of("triangles")
                     ));
                 }
@@ -137,7 +143,11 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         };
     }
     if let Some(key) = ["polygon", "circle"].into_iter().find(|key| record.gives(key)) {
-        record.error(key, "is an outline in a plane: give it a length, extrude = { ... }", report);
+        record.error(
+            key,
+            "E0225: this outline lies in a plane, and the case is 3-D. Give it a length with extrude = { ... }.",
+            report,
+        );
         return None;
     }
     Some(SolidShape::Box { corners: cuboid(record, report)? })
@@ -148,7 +158,7 @@ pub(in super::super) fn cuboid(record: &Record, report: &mut Report<'_>) -> Opti
     let shape = record.record("box")?;
     let (lower, upper) = (shape.vector("lower")?, shape.vector("upper")?);
     if (0..3).any(|axis| lower[axis] >= upper[axis]) {
-        shape.error("upper", format!("{upper:?} is not above lower = {lower:?}: the body is empty"), report);
+        shape.error("upper", super::empty_box(&lower, &upper), report);
         return None;
     }
     Some([lower, upper])

@@ -30,9 +30,8 @@ fn a_slope_without_cohesion_that_fails_says_so() {
 #[test]
 fn a_record_of_peer_ends_with_65_and_the_way_to_convert_it() {
     let shaken = changed(SLOPE, "\"quasi-static\"", "\"dynamic\", end = 1.0");
-    let scratch = Scratch::with_case(&format!(
-        "{shaken}\n[shaking]\nacceleration = {{ file = \"rec.at2\", along = \"x\" }}\n"
-    ));
+    let scratch =
+        Scratch::with_case(&format!("{shaken}\n[shaking]\nacceleration = {{ file = \"rec.at2\", along = \"x\" }}\n"));
     let record = "PEER STRONG MOTION DATABASE RECORD\nIMPERIAL VALLEY\nACCELERATION TIME SERIES IN UNITS OF G\n\
                   NPTS=  8, DT= .0200 SEC\n  .1E-03  .2E-03 .3E-03 .1E-02\n";
     scratch.write("rec.at2", record);

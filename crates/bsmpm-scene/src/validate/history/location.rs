@@ -1,0 +1,113 @@
+//! Places, lines, boxes and faces that histories refer to.
+
+use crate::case::Face;
+use crate::grid::GridSpec;
+use crate::record::Record;
+use crate::report::Report;
+use crate::validate::{place, site};
+use crate::words::{Geometry, Side};
+
+/// Lines of a section, and whether it is a disc: in a plane itself, of a solid the middle lines of a plate.
+pub(super) fn section(
+    (root, record): (&Record, &Record),
+    grid: Option<&GridSpec>,
+    report: &mut Report<'_>,
+) -> Option<(Vec<[[f64; 3]; 2]>, bool)> {
+    if root.word::<Geometry>("geometry")? != Geometry::Solid {
+        return Some((vec![ends(record, grid, report)?], false));
+    }
+    if !record.gives("rectangle") && !record.gives("disc") {
+        let message = "E0644: a section in 3-D needs a plane area. Add `rectangle` or `disc`.";
+        report.error(record.origin, &record.path, message);
+        return None;
+    }
+    let plate = site::plate(record, grid?, report)?;
+    Some((plate.lines().into(), plate.round))
+}
+
+/// Ends of a line that has a length.
+pub(in crate::validate) fn ends(
+    record: &Record,
+    grid: Option<&GridSpec>,
+    report: &mut Report<'_>,
+) -> Option<[[f64; 3]; 2]> {
+    let [from, to] = [record.vector("from"), record.vector("to")];
+    let ends = [from?, to?];
+    if ends[0] == ends[1] {
+        let message = format!(
+            "E0651: the line begins and ends at {:?}, so its length is 0. Correct `from` or `to`.",
+            record.numbers("to")?
+        );
+        record.error("to", message, report);
+        return None;
+    }
+    for (key, end) in ["from", "to"].into_iter().zip(ends) {
+        if let Some(beyond) = grid.and_then(|grid| place::is_beyond(grid, end)) {
+            record.error(key, beyond, report);
+        }
+    }
+    Some(ends)
+}
+
+/// The face of a history.
+pub(super) fn face(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Face> {
+    let (side, geometry) = (record.word::<Side>("face")?, root.word::<Geometry>("geometry")?);
+    let face = Face::of(side, geometry);
+    if face.is_none() {
+        let message = format!("E0653: a {geometry} grid has no face \"{side}\". Name another face.");
+        record.error("face", message, report);
+    }
+    face
+}
+
+/// Whether a place follows the surface of the ground; `None` after an error.
+pub(super) fn at_surface(record: &Record) -> Option<bool> {
+    if record.gives("surface") { record.flag("surface") } else { Some(false) }
+}
+
+/// The x of a height, if it has one; the outer option is `None` after an error.
+pub(super) fn at_x(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<Option<f64>> {
+    if !record.gives("at_x") {
+        return Some(None);
+    }
+    let x = record.number("at_x")?;
+    if let Some(beyond) = grid.and_then(|grid| place::beyond(grid, [x])) {
+        record.error("at_x", beyond, report);
+    }
+    Some(Some(x))
+}
+
+/// A box that has something in common with the grid.
+pub(super) fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
+    let (lower, upper) = (record.vector("lower")?, record.vector("upper")?);
+    if let Some(grid) = grid {
+        let axes = grid.dims();
+        let (low, high) = (&lower[..axes], &upper[..axes]);
+        if (0..axes).any(|axis| lower[axis] >= upper[axis]) {
+            let message = format!(
+                "E0651: the box is empty, because its upper corner {high:?} is not above its lower corner {low:?}. \
+                 Correct `upper` or `lower`."
+            );
+            record.error("upper", message, report);
+        }
+        let (start, end) = (grid.lower(), grid.upper());
+        if (0..axes).any(|axis| upper[axis] <= start[axis] || lower[axis] >= end[axis]) {
+            let message = format!(
+                "E0650: the box is outside the grid, which spans {:?} to {:?}. Move it into the grid.",
+                &start[..axes],
+                &end[..axes]
+            );
+            report.error(record.origin, &record.path, message);
+        }
+    }
+    Some([lower, upper])
+}
+
+/// A place in the grid.
+pub(super) fn at(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[f64; 3]> {
+    let at = record.vector("at")?;
+    if let Some(beyond) = grid.and_then(|grid| place::is_beyond(grid, at)) {
+        record.error("at", beyond, report);
+    }
+    Some(at)
+}

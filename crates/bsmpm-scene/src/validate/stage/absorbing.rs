@@ -1,0 +1,89 @@
+//! What stages may change in ground with absorbing or free-field boundaries.
+
+use crate::case::{Acting, Case, Stage, Support};
+use crate::record::Record;
+use crate::report::Report;
+use crate::validate::free_field;
+use crate::words::Word;
+
+/// The forces that absorbing faces carry are found again as a stage begins, for ground at rest under constant loads and
+/// next to columns of the free field that the stage does not change.
+pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Report<'_>) {
+    let absorbs = |support: Support| matches!(support, Support::Absorbing | Support::FreeField);
+    let faces = case.faces_at(stage.at);
+    if stage.only_resets() || !faces.iter().any(|of| absorbs(of.support)) {
+        return;
+    }
+    let mut refuse = |key: &str, message: &str| record.error(key, message, report);
+    if case.shakes_from() < stage.at {
+        refuse(
+            "at",
+            "E0627: with absorbing boundaries a stage that changes the ground must begin before the earthquake. Let \
+             [shaking] begin later.",
+        );
+    }
+    if stage.strength_reduction.is_some() {
+        refuse(
+            "strength_reduction",
+            "E0627: a stage cannot reduce the strength next to absorbing boundaries, because failing ground moves. \
+             Make those boundaries \"fixed\".",
+        );
+    }
+    if case.is_ever(Support::Contact) || !case.rigid.is_empty() {
+        refuse(
+            "at",
+            "E0627: stages with absorbing boundaries are not available with boundaries in contact or rigid bodies. \
+             Make the absorbing boundaries \"fixed\".",
+        );
+    }
+    let grows = |what: Acting| match what {
+        Acting::Load(load) => case.grows_from(load),
+        _ => true,
+    };
+    if case.still_grows(stage.at) || stage.apply.iter().any(|(_, what)| grows(*what)) {
+        refuse(
+            "at",
+            "E0627: with absorbing boundaries all loads must be constant when a stage begins. End their `ramp` or \
+             `amplitude` earlier, or use ramp = 0.",
+        );
+    }
+    if stage.release.iter().any(|(_, what)| !matches!(what, Acting::Load(_))) {
+        refuse(
+            "deactivate",
+            "E0627: with absorbing boundaries a stage can deactivate loads only, no footing or prescribed motion. \
+             Make the boundaries \"fixed\".",
+        );
+    }
+    for of in faces.iter().filter(|of| of.support == Support::FreeField) {
+        let (lower, higher) = free_field::column(case, of.face.upper);
+        let is_in = |body: &usize| {
+            let [from, to] = case.bodies[*body].bounds();
+            from[0] < higher && to[0] > lower
+        };
+        for key in ["add", "remove"] {
+            let bodies = if key == "add" { &stage.add } else { &stage.remove };
+            if bodies.iter().any(is_in) {
+                let message = format!(
+                    "E0628: the body lies in the cells at the free-field boundary `{}`, which must not change. Keep \
+                     it one cell away.",
+                    of.face.side(case.geometry).word()
+                );
+                refuse(key, &message);
+            }
+        }
+        if !stage.materials.is_empty() {
+            refuse(
+                "materials",
+                "E0628: a stage cannot change materials if a side is a free field, which keeps its own. Make the side \
+                 \"fixed\" or \"roller\".",
+            );
+        }
+        if stage.faces.iter().any(|of| of.face.axis == 0) {
+            refuse(
+                "boundary",
+                "E0628: a stage cannot change the left or right boundary if a side is a free field. Change \"bottom\" \
+                 or \"top\" only.",
+            );
+        }
+    }
+}
