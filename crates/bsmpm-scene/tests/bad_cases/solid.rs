@@ -161,7 +161,7 @@ pub const SOLID: &[Row] = &[
     row("density = 2000", FLOWS, "drain.0.surface", "E0225").down(7),
     row("density = 2000", PERMEABLE, "material.soil.permeability", "expected").down(3),
     row("at    = [0.5, 0.0, 0.5]", "at    = [0.5, 0.5]", "point_load.0.at", "three in 3-D"),
-    row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 1.9]", "point_load.0.at", "no body is at [3.9, 0.1, 1.9]"),
+    row("at    = [0.5, 0.0, 0.5]", "at    = [3.9, 0.1, 1.9]", "point_load.0.at", "E0401 .. [3.9, 0.1, 1.9]"),
     row(FORCE, "force = \"-10 N\"", "point_load.0.force", "found \"-10 N\". Give three components in 3-D"),
     row(FORCE, "force = [0.0, \"-10 N/m\"]", "point_load.0.force", "three components in 3-D, [x, y, z], in N"),
     row(FORCE, "force = [0.0, 0.0, \"-10 kPa\"]", "point_load.0.force", "expected a force (N, kN, MN)"),

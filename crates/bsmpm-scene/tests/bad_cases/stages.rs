@@ -12,8 +12,7 @@ pub const STAGES: &[Row] = &[
     row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "E0622").down(1),
     row("add  = [\"fill\"]", "activate = [\"fill\"]", "stage.0.activate", "E0612"),
     row("add  = [\"fill\"]", "activate = [\"plough\"]", "stage.0.activate", "E0624"),
-    row("add  = [\"fill\"]", "activate = [\"pipe\"]", "rigid.1.start_velocity", "a stage applies it later, at rest")
-        .down(47),
+    row("add  = [\"fill\"]", "activate = [\"pipe\"]", "rigid.1.start_velocity", "E0430").down(47),
     row(
         "add  = [\"fill\"]",
         "materials = [{ from = \"sand\", to = \"clai\" }]",
