@@ -62,7 +62,7 @@ pub enum FrameFormat {
 
 /// Implicit B-spline material point method: runs a case on one or more MPI ranks.
 #[derive(Clone, Debug, Parser)]
-#[command(name = "bsmpm-par", version, about)]
+#[command(name = "bsmpm-par", version)]
 pub struct Arguments {
     /// The case file (TOML).
     pub case: PathBuf,

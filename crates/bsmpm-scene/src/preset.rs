@@ -248,7 +248,7 @@ impl Completion<'_, '_> {
         let given = |table: &DocumentTable| keys.iter().any(|key| table.get(key).is_some());
         match self.document.get(table) {
             Some(DocumentEntry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
-            _ => self.report.error(self.choice.origin, self.choice.key, message),
+            _ => self.report.consequence(self.choice.origin, self.choice.key, message, scene::BASIS),
         }
     }
 

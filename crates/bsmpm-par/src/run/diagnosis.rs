@@ -8,6 +8,7 @@ use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::failure::{FailureMeasures, FailureReport};
 use bsmpm_io::manifest::Worst;
+use bsmpm_messages::code_of;
 use bsmpm_scene::{Body, Case, GridSpec, Initial, Rigid};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::CommunicatorCollectives;
@@ -37,7 +38,7 @@ pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case:
         tolerances,
         worst: last.map_or_else(Vec::new, |error| worst(world, places_of(error, iterated), &case.grid)),
         loose: last.and_then(|error| loose(error, case)),
-        advice: last.map_or_else(Vec::new, |error| advice(error, case)),
+        advice: last.map_or_else(Vec::new, |error| [implausible(case), advice(error, case)].concat()),
     }
 }
 
@@ -168,6 +169,26 @@ fn starts_at_rest(case: &Case) -> bool {
     case.settles || case.initial == Some(Initial::Elastic)
 }
 
+/// What the case was warned of as probably not meant: it may well be why a step fails.
+fn implausible(case: &Case) -> Vec<String> {
+    let is_slip = |warning: &&String| code_of(warning).is_some_and(|code| code.starts_with("W01"));
+    case.warnings.iter().filter(is_slip).map(|warning| format!("heed the warning at the start, {warning}")).collect()
+}
+
+/// What helps where soil without cohesion has a free surface that its weight alone brings to failure.
+fn against_local_failure(case: &Case) -> Option<String> {
+    let is_without = |body: &&Body| cohesion(&case.materials[body.material].material) == Some(0.0);
+    let body = case.bodies.iter().find(is_without)?;
+    let is_at_rest = case.analysis.regime == Regime::QuasiStatic && !case.has_prescribed_motion();
+    (is_at_rest && case.gravity.is_some()).then(|| {
+        format!(
+            "material.{} has no cohesion: a free surface as steep as its friction angle, and the toe of a slope, fail under \
+             their own weight. Give it a small cohesion, such as \"0.1 kPa\", or make the slope flatter",
+            case.materials[body.material].name
+        )
+    })
+}
+
 /// What helps where something is pushed into soil without cohesion. A footing on sand with a friction angle of 40 and a
 /// dilation angle of 10 degrees ended with 80 whatever the background, with four times as many steps, and with a
 /// cohesion of 0.1 and 1 kPa; with the purpose it found its limit load.
@@ -220,7 +241,7 @@ fn not_converged(
     criteria: &Criteria,
     case: &Case,
 ) -> Vec<String> {
-    let mut lines: Vec<String> = against_no_cohesion(case).into_iter().collect();
+    let mut lines: Vec<String> = against_no_cohesion(case).into_iter().chain(against_local_failure(case)).collect();
     if case.rigid.iter().any(|body| body.friction > 0.0) {
         // What stops is what the state became in steps too coarse, not how far the step goes (`boundary/rigid.md`).
         lines.push("Use several times as many steps from the start, as a rough rigid body needs short steps.".into());

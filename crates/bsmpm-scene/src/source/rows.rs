@@ -8,10 +8,6 @@ use std::ops::Range;
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
-/// Of a ground motion in the format of the PEER database.
-const PEER: &str = "E0012: PEER records (.AT2) are not read. Convert the record to rows of time and acceleration with \
-                    the heading `t [s], a [g]`.";
-
 /// A table in the place of rows, as it is written.
 struct FileReference<'a> {
     span: Range<usize>,
@@ -68,12 +64,19 @@ fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
     let text = String::from_utf8(bytes)
         .map_err(|_| Error::new(ErrorKind::InvalidData, "E0002: the file is not UTF-8 text. Save it as UTF-8."))?;
     let begins = |word: &str| text.trim_start().get(..word.len()).is_some_and(|of| of.eq_ignore_ascii_case(word));
+    if begins("PEER") || text.lines().take(4).any(|line| line.trim_start().to_ascii_uppercase().starts_with("NPTS")) {
+        return Err(Error::new(ErrorKind::InvalidData, PEER));
+    }
     match (begins("ncols"), begins("solid")) {
         (true, _) => grid(&text),
         (_, true) => stl::facets(&text),
         _ => rows(&text, along),
     }
 }
+
+/// Of a record as the databases of ground motions write it.
+const PEER: &str = "E0049: this is a record in PEER's format (.AT2), which is not read. Write a text file with the columns \
+                    `t [s], a [g]`, one row per sample: t is the number of the row times DT.";
 
 /// The bytes of a file that is not longer than a case may be.
 fn read(path: &Path) -> io::Result<Vec<u8>> {

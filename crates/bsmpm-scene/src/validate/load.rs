@@ -42,7 +42,7 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         let plate = plate(record, grid, report)?;
         let mut places = places(Site::Plate(plate), grid).into_iter();
         if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
-            record.error(key, no_body(&at), report);
+            record.consequence(key, no_body(&at), &["body"], report);
             return None;
         }
         return Some(LoadedLine::Plate(plate));
@@ -110,7 +110,7 @@ pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut R
         if let Some(message) = is_beyond(grid, at) {
             record.error("at", message, report);
         } else if !is_at(bodies, grid, at) {
-            record.error("at", no_body(&at[..grid.dims()]), report);
+            record.consequence("at", no_body(&at[..grid.dims()]), &["body"], report);
         }
         let (force, (ramp, amplitude)) = force?;
         let key = if record.gives("force_path") { "force_path" } else { "force" };
@@ -161,7 +161,7 @@ fn acts_on_body(
 ) {
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
     if let Some(at) = places.find(|at| !at_body(bodies, grid, *at)) {
-        record.error(key, no_body(&at), report);
+        record.consequence(key, no_body(&at), &["body"], report);
     }
 }
 

@@ -43,7 +43,13 @@ const MATRIX: &[Input] = &[
         .up(2)],
         ..NONE
     },
-    Input { id: "I04", refused: &[row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "E0005").down(1)], ..NONE },
+    Input {
+        id: "I04",
+        refused: &[
+            row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "`poisson` is given twice, here and in line 19").down(1)
+        ],
+        ..NONE
+    },
     Input {
         id: "I08",
         refused: &[
@@ -181,8 +187,8 @@ const MATRIX: &[Input] = &[
             row("face = \"right\"", "face = \"top\"", "prescribed.0.face", "E0236"),
         ],
         refused_static: &[
-            row("bottom = \"fixed\"", "", "boundary", "nothing holds the bodies along x").up(1),
-            row("bottom = \"fixed\"", "bottom = \"roller\"", "boundary", "a quasi-static analysis is singular then")
+            row("bottom = \"fixed\"", "", "boundary", "no support holds the bodies along x").up(1),
+            row("bottom = \"fixed\"", "bottom = \"roller\"", "boundary", "a quasi-static analysis has no solution")
                 .up(1),
         ],
         ..NONE
@@ -286,7 +292,10 @@ const MATRIX: &[Input] = &[
             ),
             row("\"2 t/m3\"", "1e308", "material.sand.density", "a density is at most 1e9 in SI"),
         ],
-        taken: &[("-9.81]", "-1e12]", ""), ("density  = \"2 t/m3\"", "density = 1e9", "is unusual: check the unit")],
+        taken: &[
+            ("-9.81]", "-1e12]", ""),
+            ("density  = \"2 t/m3\"", "density = 1e9", "W0108: material.sand: 1000000000.000 kg/m3"),
+        ],
         ..NONE
     },
     Input {
@@ -299,13 +308,9 @@ const MATRIX: &[Input] = &[
         )
         .down(1)],
         taken: &[
-            (YOUNG, "20", "W0302: material.sand: Young's modulus is 0.02 kPa"),
-            (YOUNG, "\"20000 GPa\"", "W0302: material.sand: "),
-            (
-                "\"18 kN/m3\"",
-                "18",
-                "material.clay: a density of 1.834862 kg/m3 (unit weight 0.018000 kN/m3) is unusual",
-            ),
+            (YOUNG, "20", "W0101: material.sand.young: 20 Pa is 0.02 kPa"),
+            (YOUNG, "\"20000 GPa\"", "check the unit"),
+            ("\"18 kN/m3\"", "18", "W0108: material.clay: 1.835 kg/m3, a unit weight of 0.018 kN/m3"),
         ],
         ..NONE
     },

@@ -37,12 +37,7 @@ pub const WET: &[Row] = &[
 pub const SOLID: &[Row] = &[
     row("lower = [0.0, 0.0, 0.0]", "lower = [0.0, 0.0]", "grid.lower", "three in 3-D"),
     row("cell  = [0.5, 1.0, 0.5]", "cell  = [0.5, 1.0]", "grid.cell", "three in 3-D"),
-    row(
-        "upper = [4.0, 3.0, 3.0]",
-        "upper = [4.0, 3.0, -1.0]",
-        "grid.upper",
-        "the upper end along z, -1 m, is not above",
-    ),
+    row("upper = [4.0, 3.0, 3.0]", "upper = [4.0, 3.0, -1.0]", "grid.upper", "m along z. Exchange"),
     row("velocity = [0.0, 0.0, -1.0]", "velocity = [0.0, -1.0]", "body.0.velocity", "three in 3-D"),
     row("[0.0, 0.0, -9.81]", "[0.0, -9.81]", "gravity.acceleration", "three in 3-D"),
     row(BOX, "box = { lower = [0.0, 0.0, 1.0], upper = [2.0, 3.0, 1.0] }", "body.0.box.upper", "is not above lower"),

@@ -50,7 +50,7 @@ fn what_lies_on_the_ground_has_no_part_in_the_stress_at_the_start() {
 fn strips_hold_and_load_a_quasi_static_body() {
     let free = STATIC.replace("bottom = \"fixed\"\n", "");
     let errors = set(&free, &["traction.0={from=[0, 1], to=[2, 1], stress=[0, -1]}"]).unwrap_err();
-    assert_eq!(errors.len(), 2, "along x and y: {errors:?}");
+    assert!(errors.len() == 1 && errors[0].message.contains("along x and y"), "{errors:?}");
     let strip = |more: &str| format!("prescribed.0={{from=[0, 1], to=[2, 1], displacement=[0, -0.1]{more}}}");
     assert!(valid(&free, &[&strip("")]).warnings.is_empty());
     let errors = set(&free, &[&strip(", components=\"normal\"")]).unwrap_err();

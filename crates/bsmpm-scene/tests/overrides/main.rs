@@ -363,11 +363,11 @@ fn free_faces_move_outward() {
 fn doubtful_cases_are_warned_of() {
     let rows = [
         (FULL, "gravity.acceleration=[0, -9.8]", "W0205"),
-        (FULL, "material.sand.young=500", "W0302: material.sand: "),
+        (FULL, "material.sand.young=500", "W0101: material.sand.young: 500 Pa is 0.5 kPa"),
         (FULL, "material.sand.young=2e13", "W0302"),
         (FULL, "material.clay.poisson=0.49999", "W0303: material.clay: poisson = 0.49999"),
         (FULL, "material.clay.cohesion=0", "W0309"),
-        (FULL, "material.clay.unit_weight=18", "check the unit"),
+        (FULL, "material.clay.unit_weight=18", "a unit weight of 0.018 kN/m3"),
         (FULL, "body.0.points_per_cell=1", "too coarsely"),
         (FULL, "body.1.box.lower.1=0.9", "body.0 and body.1 overlap"),
         (FULL, "body.1.material=sand", "W0313: material.clay: "),

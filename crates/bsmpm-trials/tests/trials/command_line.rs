@@ -4,6 +4,7 @@ mod bad_cases;
 mod directory;
 mod hostile;
 mod log;
+mod newcomer;
 mod petsc_options;
 
 use crate::support::Scratch;
