@@ -4,7 +4,6 @@ use super::{Row, row};
 
 const BOX: &str = "box = { lower = [0.0, 0.0], upper = [4.0, 1.0] }";
 const POLYGON: &str = "polygon = [[2.5, 1.5], [3.75, 1.5], [\"3 m\", 2.5], [2.5, 2.5]]";
-const NOBODY: &str = "at the start. Move it onto a body";
 const SHAKEN: &str = "[[0.0, 0.1, 0.0], [\"1 s\", \"-0.1 g\", \"5 cm/s2\"]]";
 const STRESS: &str = "stress = [0.0, \"-20 kPa\"]";
 const CIRCLE: &str = "circle = { centre = [0.5, 2.0], radius = 0.4 }";
