@@ -39,7 +39,7 @@ fn interfaces_beyond_what_was_verified_have_a_warning() {
     assert!(warned(&[EQUAL, "material.light.young=1e13"]).is_empty());
     assert!(warned(&[soft, EQUAL, "material.light.young=1e11"]).is_empty());
     let moving = warned(&[soft, EQUAL, "material.light.young=1.1e11"]);
-    assert!(moving.len() == 1 && moving[0].contains("differs by a factor of 1.100e2"), "{moving:?}");
+    assert!(moving.len() == 1 && moving[0].contains("differs by a factor of 110 "), "{moving:?}");
     // Inside cells, by moduli and by densities.
     for (changes, count) in [
         ([EQUAL, "material.light.young=2e9"], 1),
@@ -74,7 +74,7 @@ fn bodies_that_are_apart_by_less_than_a_cell_are_warned_of() {
     let block = |lower: f64| format!("box = {{ lower = [2, {lower:?}], upper = [5, {:?}] }}", lower + 2.0);
     let found = shapes(&[GROUND, &block(2.25)]);
     assert!(
-        found.len() == 1 && found[0].starts_with("W0228: body.0 and body.1 are 2.500e-1 m apart (0.25 cells)"),
+        found.len() == 1 && found[0].starts_with("W0228: body.0 and body.1 are 0.25 m apart (0.25 cells)"),
         "{found:?}"
     );
     // Touching, a cell away or farther, and overlapping; beside and diagonally a cell away.
@@ -91,7 +91,7 @@ fn bodies_that_are_apart_by_less_than_a_cell_are_warned_of() {
     let blocks = [block(2.5), "box = { lower = [5.125, 2.5], upper = [7, 4] }".to_owned()];
     let found = shapes(&[GROUND, &blocks[0], &blocks[1]]);
     assert!(
-        found.len() == 1 && found[0].starts_with("W0228: body.1 and body.2 (and 2 more pairs) are 1.250e-1 m"),
+        found.len() == 1 && found[0].starts_with("W0228: body.1 and body.2 (and 2 more pairs) are 0.125 m"),
         "{found:?}"
     );
 }
@@ -103,7 +103,7 @@ fn the_gap_of_other_shapes_is_that_between_their_edges() {
     // The slope's surface is x + y = 8.
     let apart = |gap: f64| 4.0 + (1.0 + gap) / std::f64::consts::SQRT_2;
     let found = shapes(&[slope, &circle(apart(0.25))]);
-    assert!(found.len() == 1 && found[0].contains("are 2.500e-1 m apart"), "{found:?}");
+    assert!(found.len() == 1 && found[0].contains("are 0.25 m apart"), "{found:?}");
     for gap in [0.0, 1.01, -0.5] {
         assert_eq!(shapes(&[slope, &circle(apart(gap))]), [""; 0], "{gap}");
     }

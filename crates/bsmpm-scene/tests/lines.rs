@@ -192,7 +192,7 @@ fn where_water_fills_ground_that_moves_through_lines_there_is_a_warning() {
     let loses = |text: &str| lines(text).2.iter().any(|warning| warning.starts_with("W0219"));
     let strip = format!("{wet}{STRIP}");
     assert_eq!(lines(&strip).0, [vec![6, 10], vec![]]);
-    assert!(!loses(&strip), ".2 of a cell");
+    assert!(!loses(&strip), "0.2 of a cell");
     let has_friction = |text: &str| lines(text).2.iter().any(|warning| warning.starts_with("W0218"));
     let law = ["model = \"tresca\"", "cohesion = 1e3"];
     let friction = |angle: u32| {

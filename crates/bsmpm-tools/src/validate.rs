@@ -20,6 +20,8 @@ mod kink;
 mod matrix;
 mod measure;
 mod measured;
+#[cfg(test)]
+mod plausible;
 mod runs;
 mod table;
 

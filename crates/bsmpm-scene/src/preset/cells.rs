@@ -5,6 +5,7 @@ use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};
 use super::concentration::PresetOpening;
 use super::scene::{GradedSegment, PresetScene, around};
+use crate::report::brief;
 use crate::validate::SQUARE;
 use crate::words::{Side, Support, Word};
 
@@ -201,7 +202,7 @@ impl PresetScene<'_> {
             };
             let half = if cut { ", half of it modelled" } else { "" };
             let why = format!(
-                "{} cells across {} ({} m wide{half}), along its path and {} widths around it",
+                "{} cells across `{}` ({} m wide{half}), along its path and {} widths around it",
                 brief(width / cell),
                 segment.name,
                 brief(width),
@@ -295,9 +296,4 @@ fn of_breakpoints(breakpoints: [Vec<f64>; 2], why: String) -> Option<Cells> {
     let value = format!("{{ x = {:?}, y = {:?} }}", breakpoints[0], breakpoints[1]);
     let cells = Cells { keys: ["knots", "cell"], value, edge, why, sizes: Vec::new(), breakpoints: Some(breakpoints) };
     (edge > 0.0).then_some(cells)
-}
-
-/// A number, to four digits.
-fn brief(number: f64) -> f64 {
-    format!("{number:.3e}").parse().unwrap_or(number)
 }

@@ -1,7 +1,7 @@
 //! Bodies that move towards each other: they share nodes, and act on each other, before they touch.
 
 use crate::case::{Case, Support};
-use crate::report::Report;
+use crate::report::{Report, brief};
 use bsmpm::model::Regime;
 
 /// Times between start and end at which the distance of two bodies is tried.
@@ -32,12 +32,12 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
             let Some(time) = meeting(one, other, cell, case) else { continue };
             let reach = case.grid.order as f64;
             report.warn(format!(
-                "W0229: body.{} and body.{} approach each other at about t = {time:.3} s. They act on each other from \
-                 {:.1} cells ({:.3e} m) on, before they touch. Use smaller cells.",
+                "W0229: body.{} and body.{} come within a cell of each other at about t = {time:.3} s. They act on each \
+                 other from {:.1} cells ({} m) on. Use smaller cells, or [[rigid]] for one.",
                 one.bodies[0],
                 other.bodies[0],
                 reach - 0.5,
-                (reach - 0.5) * cell
+                brief((reach - 0.5) * cell)
             ));
             return;
         }

@@ -25,8 +25,12 @@ use bsmpm::water::retention::{Curve, Measured, Retention};
 const WATER: f64 = 9810.0;
 /// Parts of a cell by which a body may be off a face that it lies at.
 const AT: f64 = 1e-9;
+/// Keys without which it is not known where permeable soil is.
+const PERMEABLE: &[&str] = &["body", "material"];
 /// Permeability, m/s, beyond which a number is taken for a slip: that of gravel without sand.
 const MOST_PERMEABLE: f64 = 1.0;
+/// The same, m/s, of the tightest clay.
+const LEAST_PERMEABLE: f64 = 1e-14;
 
 /// Message of a key that only pore-water flow uses.
 const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this has no effect. Set `drainage = \
@@ -101,7 +105,7 @@ fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64>
     if !retains {
         let message = "E0503: no material has a `retention` curve, so the suction has no effect. Give one to the \
                        soil above the water table, or remove `suction`.";
-        water.error(KEY, message, report);
+        water.consequence(KEY, message, &["material"], report);
     }
     if ["level", "level_path", "line", "line_path"].iter().all(|key| !water.gives(key)) {
         let message = "E0504: the suction is limited above a water table, and there is none. Give `water.level`, \
@@ -228,8 +232,15 @@ fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability
     if let Some(much) = along.into_iter().find(|k| *k > MOST_PERMEABLE) {
         let path = record.path_of("permeability");
         report.warn(format!(
-            "W0501: {path}: {much} m/s is more permeable than gravel (up to {MOST_PERMEABLE} m/s), so the soil \
-             would drain at once. Check the unit; the key is a hydraulic conductivity."
+            "W0109: {path}: {much} m/s is more permeable than gravel (up to {MOST_PERMEABLE} m/s), so the soil \
+             would drain at once. Check the unit, and write it: \"1e-5 m/s\"."
+        ));
+    }
+    if let Some(little) = along.into_iter().find(|k| *k > 0.0 && *k < LEAST_PERMEABLE) {
+        report.warn(format!(
+            "W0109: {}: {little:e} m/s is less than that of bentonite (1e-14 m/s). If it is an intrinsic permeability in m2, \
+             multiply it by 1e7 1/(m s).",
+            record.path_of("permeability")
         ));
     }
     let law = record.word_if_given("permeability_law")?.unwrap_or(PermeabilityLaw::Constant);
@@ -309,7 +320,7 @@ impl Ground<'_> {
                      Move this place to the surface of the soil."
                 ),
             };
-            record.error(key, message, report);
+            record.consequence(key, message, PERMEABLE, report);
             return None;
         }
         Some(())
@@ -407,7 +418,7 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
              surface of the soil by `from` and `to` (3-D: `rectangle`).",
             ["x", "y", "z"][face.axis]
         );
-        record.error("face", message, report);
+        record.consequence("face", message, PERMEABLE, report);
         return None;
     }
     Some(face)
@@ -432,7 +443,7 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     if pieces.is_empty() {
         let message = "E0517: no soil with pore-water flow has a free surface; all of it lies at restrained faces \
                        of the grid. Give the drain a `face`, or `from` and `to`.";
-        record.error("surface", message, report);
+        record.consequence("surface", message, PERMEABLE, report);
         return None;
     }
     let long: f64 = pieces.iter().map(|[p, q]| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
@@ -492,7 +503,7 @@ pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) 
         let near = record.text("drain").map(|name| hint(name, names())).unwrap_or_default();
         let end = if near.is_empty() { "." } else { &near };
         let message = format!("E0518: the case has no such [[drain]]. Correct its name or face, or add the drain{end}");
-        record.error(key, message, report);
+        record.consequence(key, message, &["drain"], report);
         return None;
     }
     Some(found)

@@ -4,7 +4,7 @@ use crate::case::{Body, Case};
 use crate::connected::{near_pairs, pieces_of_pairs};
 use crate::grid::GridSpec;
 use crate::region::{Edge, Region};
-use crate::report::Report;
+use crate::report::{Report, brief};
 
 /// Parts of the shortest cell by which bodies that share a boundary may miss each other: rounding.
 const ROUNDING: f64 = 1e-6;
@@ -43,11 +43,11 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
     let more = if narrow.len() > 1 { format!(" (and {} more pairs)", narrow.len() - 1) } else { String::new() };
     let [one, other] = gap.bodies;
     report.warn(format!(
-        "W0228: body.{} and body.{}{more} are {:.3e} m apart ({:.2} cells), so they act on each other before they \
+        "W0228: body.{} and body.{}{more} are {} m apart ({:.2} cells), so they act on each other before they \
          touch. Use cells smaller than the gap, or close it.",
         one.min(other),
         one.max(other),
-        gap.distance,
+        brief(gap.distance),
         gap.distance / gap.cell
     ));
 }
@@ -61,6 +61,11 @@ fn are_together(case: &Case, [i, j]: [usize; 2]) -> bool {
 /// Whether bounds are nowhere farther apart than `reach`, m.
 fn is_near(a: &[[f64; 3]; 2], b: &[[f64; 3]; 2], reach: f64) -> bool {
     (0..3).all(|axis| a[0][axis].max(b[0][axis]) - a[1][axis].min(b[1][axis]) <= reach)
+}
+
+/// Whether two bodies near each other are apart by a cell or more, as far as that is known.
+pub(super) fn are_apart(case: &Case, bodies: [usize; 2], work: &mut usize) -> bool {
+    gap(case, bodies, work).is_some_and(|gap| gap.distance >= gap.cell)
 }
 
 /// The gap of two bodies near each other; of shapes in space that are no cuboids, and of shapes whose edges are too

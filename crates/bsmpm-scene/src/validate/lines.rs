@@ -12,7 +12,7 @@ use crate::case::{Case, NamedMaterial};
 use crate::grid::Line;
 use crate::record::Record;
 use crate::region::Edge;
-use crate::report::Report;
+use crate::report::{Report, brief};
 use crate::words::C0Lines;
 use bsmpm::water::flow::Soil;
 use std::collections::BTreeMap;
@@ -218,14 +218,16 @@ fn doubt(
     if on_line {
         let stiffer = || {
             format!(
-                "W0220: the stiffness of material.{a} and material.{b} differs by a factor of {moduli:.3e} (verified: \
-                 {SHOWN}). Stresses in the stiffer one are wrong after yielding. Reduce its `young`."
+                "W0220: the stiffness of material.{a} and material.{b} differs by a factor of {} (verified: \
+                 {SHOWN}). Stresses in the stiffer one are wrong after yielding. Reduce its `young`.",
+                brief(moduli)
             )
         };
         let denser = || {
             format!(
-                "W0221: the density of material.{a} and material.{b} differs by a factor of {densities:.3}. Stresses \
-                 along their interface at {at:?} are inaccurate in the adjacent cells. Use smaller cells."
+                "W0221: the density of material.{a} and material.{b} differs by a factor of {}. Stresses along \
+                 their interface at {at:?} are inaccurate in the adjacent cells. Use smaller cells.",
+                brief(densities)
             )
         };
         return match yields && moduli > SHOWN {
@@ -236,7 +238,7 @@ fn doubt(
     let unfitted = || {
         format!(
             "W0222: the interface of material.{a} and material.{b} lies inside cells, first at {at:?}. Stresses within \
-             three cells are off by tens of per cent. Put a grid line on it."
+             three cells are off by tens of per cent. Put a grid line on it (grid.knots)."
         )
     };
     (moduli.max(densities) >= UNLIKE).then(unfitted)

@@ -3,7 +3,7 @@
 use super::place::is_in;
 use crate::case::{Acting, Case};
 use crate::record::Record;
-use crate::report::Report;
+use crate::report::{Report, brief};
 use crate::surfaces::transition::{ROUNDING, apart_at_corner, holds_all, meet};
 use crate::surfaces::{self, name_of_strip};
 use crate::words::Geometry;
@@ -95,8 +95,9 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
         }
         Other::Corner { apart, .. } => {
             let message = format!(
-                "E0251: `{name}` and `{other}` share a corner, and prescribe displacements that differ by {apart:.3e} \
-                 m there. Use components = \"normal\" in both, or leave a cell between them."
+                "E0251: `{name}` and `{other}` share a corner, and prescribe displacements that differ by {} m \
+                 there. Use components = \"normal\" in both, or leave a cell between them.",
+                brief(apart)
             );
             record.error("from", message, report);
         }
@@ -109,8 +110,9 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
         }
         Other::Strip { sliding, edge, .. } if sliding > ROUNDING * edge => {
             let message = format!(
-                "E0251: `{name}` and `{other}` meet, and their tangential displacements differ by {sliding:.3e} m. The \
-                 soil cannot follow both. Use components = \"normal\" in one, or leave a cell between them."
+                "E0251: `{name}` and `{other}` meet, and their tangential displacements differ by {} m. The soil \
+                 cannot follow both. Use components = \"normal\" in one, or leave a cell between them.",
+                brief(sliding)
             );
             record.error("from", message, report);
         }

@@ -152,9 +152,8 @@ pub(super) fn face(record: &Record, grid: &GridSpec, report: &mut Report<'_>) ->
     let side: Side = record.word("face")?;
     let face = Face::of(side, if grid.dims() == 3 { Geometry::Solid } else { Geometry::PlaneStrain });
     if face.is_none() {
-        let message = format!(
-            "E0207: a grid in a plane has no face \"{side}\". Use left, right, bottom or top, or geometry = \"3d\"."
-        );
+        let message =
+            format!("E0207: a 2-D grid has no face \"{side}\". Use left, right, bottom or top, or geometry = \"3d\".");
         record.error("face", message, report);
     }
     face

@@ -27,14 +27,14 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     }
     for drain in root.records("drain").iter().chain(root.records("inflow")) {
         for key in ["from", "to", "circle", "surface"].into_iter().filter(|key| drain.gives(key)) {
-            let message = "E0225: this key belongs to a plane, and the case is 3-D. Use face, rectangle = { lower, \
+            let message = "E0225: this key belongs to 2-D cases, and this one is 3-D. Use face, rectangle = { lower, \
                            upper } or disc.";
             drain.error(key, message, report);
         }
     }
     for traction in root.records("traction") {
         for key in ["from", "to", "circle"].into_iter().filter(|key| traction.gives(key)) {
-            let message = "E0225: this key belongs to a plane, and the case is 3-D. Use rectangle = { lower, upper }, \
+            let message = "E0225: this key belongs to 2-D cases, and this one is 3-D. Use rectangle = { lower, upper }, \
                            disc, sphere or surface.";
             traction.error(key, message, report);
         }
@@ -42,7 +42,7 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     for strip in root.records("footing").iter().chain(root.records("prescribed")) {
         for key in ["from", "to"].into_iter().filter(|key| strip.gives(key)) {
             let message =
-                "E0225: this key belongs to a plane, and the case is 3-D. Use rectangle = { lower, upper } or disc.";
+                "E0225: this key belongs to 2-D cases, and this one is 3-D. Use rectangle = { lower, upper } or disc.";
             strip.error(key, message, report);
         }
     }
@@ -79,7 +79,7 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
     let stages = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));
     for boundary in root.record("boundary").into_iter().chain(stages) {
         for side in [Side::Front, Side::Back].into_iter().filter(|side| boundary.gives(side.word())) {
-            let message = "E0207: a grid in a plane has no such face. Delete it, or use geometry = \"3d\".";
+            let message = "E0207: a 2-D grid has no such face. Delete it, or use geometry = \"3d\".";
             boundary.error(side.word(), message, report);
         }
     }

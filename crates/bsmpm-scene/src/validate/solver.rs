@@ -70,7 +70,7 @@ fn weights(
 
 /// Fits the points' weights where materials of unlike stiffness meet on a C0 line, unless the case says otherwise:
 /// material that crosses the line has wrong stresses without. Not in dynamics, on cubic grids and where water flows. At
-/// C0 lines at the ends of strips it gains nothing, and limit loads are .6 % higher.
+/// C0 lines at the ends of strips it gains nothing, and limit loads are 0.6 % higher.
 pub(super) fn fit_weights(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let is_given = root.record("solver").is_none_or(|solver| solver.gives("quadrature"));
     let may_fit = case.analysis.regime == Regime::QuasiStatic && case.grid.order < 3 && case.flow.is_none();
@@ -151,7 +151,7 @@ pub(super) fn warn_of_background(case: &Case, report: &mut Report<'_>) {
 
 /// Unknowns from which multigrid is taken by itself: a factor of so many has about 40 GB.
 const MANY: u128 = 10_000_000;
-/// Poisson's ratio up to which it is: multigrid's iterations grow from 22 at .3 to 124 at .495 and 900 at .4999.
+/// Poisson's ratio up to which it is: multigrid's iterations grow from 22 at 0.3 to 124 at 0.495 and 900 at 0.4999.
 const COMPRESSIBLE: f64 = 0.45;
 
 /// What the linear solver is chosen by.

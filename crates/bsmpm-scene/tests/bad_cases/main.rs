@@ -101,8 +101,8 @@ fn what_two_groups_of_keys_forbid_is_reported_once() {
     let sphere = "sphere = { centre = [3, 1.5, 2.0]";
     let text = SOLID.replacen(sphere, &format!("disc = {{ centre = [0.4, 1.5, 1.0], radius = 0.3 }}\n{sphere}"), 1);
     let errors = Case::from_text("case.toml", &text, &[]).expect_err("a disc and a sphere");
-    let told = errors.iter().filter(|error| error.code.as_deref() == Some("E0016")).count();
-    assert_eq!(told, 1, "{errors:?}");
+    let reported = errors.iter().filter(|error| error.code.as_deref() == Some("E0016")).count();
+    assert_eq!(reported, 1, "{errors:?}");
 }
 
 #[test]

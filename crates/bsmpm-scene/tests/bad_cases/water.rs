@@ -38,17 +38,16 @@ pub const WATER: &[Row] = &[
 ];
 /// Pressure that points carry, beside other water.
 pub const RATIO_AND_WATER: &[Row] = &[
-    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "[water] gives the pore pressure, too")
-        .down(1),
+    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "E0320").down(1),
     row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 1.0", RU, "(0 < ru < 1").down(1),
     row("[water]\nlevel = 0.75\n", "[water]\nlevel = 0.75\nru = 0.3\n", "water.ru", "E0011").down(2),
 ];
 
 /// Pressure that points carry, beside what it is not right with.
 pub const RATIO: &[Row] = &[
-    row(WEIGHT, WET_WEIGHT, RU, "nothing weighs without [gravity]").down(1),
-    row("poisson = 0.3\n", ADDED_GRAVITY, RU, "is not straight down").down(2),
-    row("poisson = 0.3\n", ADDED_STAGE, RU, "whatever stages place, take away or exchange").down(2),
+    row(WEIGHT, WET_WEIGHT, RU, "E0321 .. Add [gravity]").down(1),
+    row("poisson = 0.3\n", ADDED_GRAVITY, RU, "E0321 .. vertical gravity").down(2),
+    row("poisson = 0.3\n", ADDED_STAGE, RU, "E0322").down(2),
 ];
 const RU: &str = "material.soil.ru";
 const WEIGHT: &str = "poisson = 0.3\n";

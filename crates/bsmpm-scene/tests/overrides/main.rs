@@ -198,7 +198,7 @@ fn the_full_case_in_si() {
     let (thin, placed) = (count("W0413: rigid."), count("W0416: rigid."));
     let cut = case.warnings.iter().filter(|warning| warning.contains("W0428")).count();
     let coarse = case.warnings.iter().filter(|warning| warning.contains("cells per wavelength")).count();
-    let approach = case.warnings.iter().filter(|warning| warning.contains("approach each other")).count();
+    let approach = case.warnings.iter().filter(|warning| warning.starts_with("W0229")).count();
     let found = (case.warnings.len(), thin, placed, cut, coarse, approach);
     assert_eq!(found, (10, 2, 1, 2, 1, 1), "{:?}", case.warnings);
 }
@@ -362,22 +362,22 @@ fn free_faces_move_outward() {
 #[test]
 fn doubtful_cases_are_warned_of() {
     let rows = [
-        (FULL, "gravity.acceleration=[0, -9.8]", "near 9.81"),
-        (FULL, "material.sand.young=500", "W0302: material.sand: "),
+        (FULL, "gravity.acceleration=[0, -9.8]", "W0205"),
+        (FULL, "material.sand.young=500", "W0101: material.sand.young: 500 Pa is 0.5 kPa"),
         (FULL, "material.sand.young=2e13", "W0302"),
-        (FULL, "material.clay.poisson=0.49999", "W0303: material.clay: poisson = 0.49999"),
+        (FULL, "material.clay.poisson=0.49999", "W0303: material.clay: "),
         (FULL, "material.clay.cohesion=0", "W0309"),
-        (FULL, "material.clay.unit_weight=18", "check the unit"),
-        (FULL, "body.0.points_per_cell=1", "too coarsely"),
-        (FULL, "body.1.box.lower.1=0.9", "body.0 and body.1 overlap"),
+        (FULL, "material.clay.unit_weight=18", "a unit weight of 0.018 kN/m3"),
+        (FULL, "body.0.points_per_cell=1", "W0210"),
+        (FULL, "body.1.box.lower.1=0.9", "W0213: body.0 and body.1 overlap"),
         (FULL, "body.1.material=sand", "W0313: material.clay: "),
-        (STATIC, "gravity={acceleration=[0, -9.81], ramp=5}", "never fully applied"),
-        (FULL, "traction.0.ramp=5", "never acts in full"),
-        (FULL, "traction.0.ramp=0", "traction.0: acts in full from time 0"),
-        (FULL, "point_load.0.ramp=0", "point_load.0: acts in full from time 0"),
-        (FULL, "prescribed.1.path.1.0=2", "prescribed.1.path: the row at t = 2 is beyond the end"),
+        (STATIC, "gravity={acceleration=[0, -9.81], ramp=5}", "W0207"),
+        (FULL, "traction.0.ramp=5", "W0402"),
+        (FULL, "traction.0.ramp=0", "W0405: traction.0: "),
+        (FULL, "point_load.0.ramp=0", "W0405: point_load.0: "),
+        (FULL, "prescribed.1.path.1.0=2", "W0403: prescribed.1.path: "),
         (FULL, "material.till.dilation_angle=30.5", "W0308: material.till.dilation_angle: "),
-        (FULL, "body.3.polygon=[[2.5, 1.0], [3.75, 1.0], [3, 2.5], [2.5, 2.5]]", "overlap"),
+        (FULL, "body.3.polygon=[[2.5, 1.0], [3.75, 1.0], [3, 2.5], [2.5, 2.5]]", "W0213"),
         (STATIC, "strength_reduction.factor=2", "W0601"),
         (FULL, "output.every=5", "W0661"),
         (STATIC, "material.soil.poisson=0.46", "W0315"),

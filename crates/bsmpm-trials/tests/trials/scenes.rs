@@ -330,8 +330,8 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, -100\n");
     named.mpirun(1, &["case.toml", "-q", "--restart", "auto"]).expect(76).says_once("shaking.acceleration was");
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, fast\n");
-    let told = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
-    told.says_once("error E0028: quake.csv: `fast` in line 3 of the data file");
+    let refused = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
+    refused.says_once("error E0028: quake.csv: `fast` in line 3 of the data file");
     let lengths: String = (1..=40).map(|row| format!("{row}, 1\n")).collect();
     named.write("quake.csv", format!("t [m], a [cm/s2]\n{lengths}"));
     named

@@ -190,7 +190,7 @@ fn the_factor_shows_walls_that_lines_do_not_see() {
     assert!(off(1.0) < 0.02 && off(0.2) < 0.04, "{} {}", off(1.0), off(0.2));
     assert!(off(0.01) > 0.4, "{}", off(0.01));
     let unseen = scales_of_pipes(1e-7, 2);
-    assert!(unseen.iter().any(|scale| matches!(scale, Err(told) if told.starts_with("E0037"))), "{unseen:?}");
+    assert!(unseen.iter().any(|scale| matches!(scale, Err(message) if message.starts_with("E0037"))), "{unseen:?}");
 }
 
 /// However small it is: a sphere's box is where its lines are.
