@@ -84,11 +84,12 @@ pub struct CheckpointState {
     pub record: RecordState,
     /// Strips of which it was reported that they hold nothing and, their number added, that they have let go; drains
     /// and inflows without ground, three times that number added.
-    pub told_strips: BTreeSet<usize>,
+    #[serde(rename = "told_strips")] // as it is in older checkpoints
+    pub warned_strips: BTreeSet<usize>,
     /// Rigid bodies of which it was reported that they came too fast (twice their number) or go into the soil (and
     /// one), and behind those pairs that have met, and bodies that went through a face.
-    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
-    pub told_rigid: BTreeSet<usize>,
+    #[serde(rename = "told_rigid", default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub warned_rigid: BTreeSet<usize>,
     /// The step of the newest frame.
     pub last_frame: Option<u64>,
     /// The files.

@@ -205,7 +205,7 @@ fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<u
     found
 }
 
-/// Tells of the first pair of bodies that have an area in common, and are there at the same time.
+/// Warns of the first pair of bodies that have an area in common, and are there at the same time.
 pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
     let (bodies, grid) = (&case.bodies, &case.grid);
     let times = || std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));

@@ -353,7 +353,7 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
             record.error("surface", message, report);
             return None;
         }
-        // What is wrong with it in space is told there.
+        // What is wrong with it in space is reported there.
         ground.around.grid.filter(|grid| grid.dims() == 2)?;
         DrainSite::Lines(surface(record, ground, report)?)
     } else if record.gives("circle") {

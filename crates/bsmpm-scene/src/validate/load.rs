@@ -83,7 +83,7 @@ fn stresses(record: &Record) -> Option<[Profile; 3]> {
     Some([0, 1, 2].map(|axis| Profile { value: value[axis], at, per_metre: growth[axis] }))
 }
 
-/// What a traction is; on which side of a pressure bodies lie only the whole case tells ([`super::side`]).
+/// What a traction is; on which side of a pressure bodies lie follows from the whole case only ([`super::side`]).
 fn push(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(Push, (f64, Shares))> {
     let pressure = |profile: Profile| Push::Pressure { profile, side: 0.0 };
     if record.gives("pressure_path") {

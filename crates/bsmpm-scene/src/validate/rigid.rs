@@ -434,13 +434,13 @@ pub(super) fn hold(case: &Case, component: usize, except: Option<Acting>) -> boo
         if rigid.free.contains(&true) || Some(acting) == except || case.acts_since(acting, 0.0).is_none() {
             return false;
         }
-        let rubs = rigid.friction > 0.0;
+        let has_friction = rigid.friction > 0.0;
         match &rigid.shape {
-            RigidShape::Circle { center, radius } => rubs && place::ring(*center, radius + out).any(at_body),
+            RigidShape::Circle { center, radius } => has_friction && place::ring(*center, radius + out).any(at_body),
             RigidShape::Polygon(corners) => corners.iter().zip(corners.iter().cycle().skip(1)).any(|(from, to)| {
                 let normal = normal(*from, *to); // to the left, inside
                 let beside = |at: [f64; 2]| [at[0] - out * normal[0], at[1] - out * normal[1]];
-                let pushes = rubs || normal[component].abs() > OVERLAP;
+                let pushes = has_friction || normal[component].abs() > OVERLAP;
                 pushes && place::along([*from, *to]).any(|at| at_body(beside(at)))
             }),
             RigidShape::InSpace(_) => false,

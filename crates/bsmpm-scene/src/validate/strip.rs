@@ -23,8 +23,8 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
     let site = site(record, around, report);
     let (path, site) = (path?, site?);
     stays_inside(record, site, &path, around, report);
-    let (base, contact) = match rubs((root, record), "interface", site, around, report) {
-        Some(rubs) => rubs?,
+    let (base, contact) = match contact_of((root, record), "interface", site, around, report) {
+        Some(found) => found?,
         None => (record.word("interface")?, None),
     };
     if base == Base::Smooth && contact.is_none() && normal_part(&path, site) <= NOTHING * path.farthest() {
@@ -53,8 +53,8 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             }
             Site::Segment { .. } | Site::Plate(_) => stays_inside(record, site, &path, around, report),
         }
-        let rubs = match site {
-            Site::Segment { .. } | Site::Plate(_) => rubs((root, record), "components", site, around, report),
+        let found = match site {
+            Site::Segment { .. } | Site::Plate(_) => contact_of((root, record), "components", site, around, report),
             Site::Face(_) => {
                 if record.record("components").is_some() {
                     let message = "E0418: contact is not available on a moving face of the grid. Use a segment (`from`, `to`) \
@@ -64,8 +64,8 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
                 None
             }
         };
-        let (base, contact) = match rubs {
-            Some(Some(rubs)) => rubs,
+        let (base, contact) = match found {
+            Some(Some(contact)) => contact,
             Some(None) => continue,
             None => (record.word("components").unwrap_or(Components::All).base(), None),
         };
@@ -74,9 +74,9 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
     found
 }
 
-/// What a strip does that rubs and lets go, and what it may hold so; `None` where the key is a word, `Some(None)` after
-/// an error.
-fn rubs(
+/// The frictional contact of a strip, and the components that it may prescribe so; `None` where the key is a word,
+/// `Some(None)` after an error.
+fn contact_of(
     (root, record): (&Record, &Record),
     key: &str,
     site: Site,
@@ -224,7 +224,7 @@ pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
     }
 }
 
-/// Whether the history tells of the force of that strip.
+/// Whether the history is the force of that strip.
 fn is_of_force(history: &History, number: usize, case: &Case) -> bool {
     match history.quantity {
         Quantity::Strip { number: of, measured } => of == number && !measured.is_of_contact(),

@@ -8,7 +8,7 @@ use crate::validate::site::normal_of;
 use crate::validate::{place, site};
 use bsmpm::water::flow::{Given, Soil};
 
-/// Parts of a cell by which surfaces may be apart and still be one, and by which they overlap at least to be told.
+/// Parts of a cell by which surfaces may be apart and still be one, and by which they overlap at least to be reported.
 const APART: f64 = 0.05;
 const OVERLAP: f64 = 0.25;
 

@@ -10,7 +10,7 @@ use crate::report::Report;
 use crate::words::{Axis, Geometry};
 
 /// Factor of the volumes in cells that are cut, less 1, above which there is a warning. At 2 or 3 points along an axis
-/// walls of a fifth of a cell have .04 at most, of a hundredth .5 to .9; spheres of any size .06.
+/// walls of a fifth of a cell have 0.04 at most, of a hundredth 0.5 to 0.9; spheres of any size 0.06.
 const SCALED: f64 = 0.1;
 
 /// What a body of a solid fills.
