@@ -70,7 +70,7 @@ impl Log {
             speaks,
             verbosity,
             format,
-            progress: progress(arguments.progress, verbosity, is_watched),
+            progress: if speaks { progress(arguments.progress, verbosity, is_watched) } else { Progress::Off },
             due: Instant::now() + first,
             end: case.analysis.end,
             unit: if case.analysis.kind.is_timeless() { "" } else { " s" },

@@ -54,6 +54,21 @@ impl Display for Shortage {
     }
 }
 
+impl Shortage {
+    /// Why the case is not run.
+    fn refusal(&self) -> String {
+        match self.by {
+            Limit::Asked => format!(
+                "E0702: the case needs {self}. Nothing was run or written. Use larger cells or fewer points, or raise this limit."
+            ),
+            Limit::Free | Limit::Group | Limit::Process => format!(
+                "E0702: the case needs {self}. Nothing was run or written. Use larger cells, fewer points or more hosts, or set \
+                 `--max-memory`."
+            ),
+        }
+    }
+}
+
 /// Refuses a case that needs more than the first rank's host or the command line allows, which that rank says; `Err`
 /// holds the exit code, the same on all ranks. What is only checked may be meant for another host. Collective.
 pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> Result<(), u8> {
@@ -81,11 +96,7 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
                 say(&headed(&text, "warning"));
             }
             Some(shortage) => {
-                let text = format!(
-                    "E0702: the case needs {shortage}. Nothing was run or written. Use larger cells, fewer points or more hosts, \
-                     or set `--max-memory`."
-                );
-                complain(&text);
+                complain(&shortage.refusal());
                 code = exit::MEMORY;
             }
             None => {}
