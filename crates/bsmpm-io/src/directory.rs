@@ -73,7 +73,8 @@ impl OutputDirectory {
         match (held.first(), existing) {
             (None, _) => {}
             (Some(found), Existing::Refuse) => {
-                let advice = "give another with -o, --restart auto to go on with it, or --force to delete what its run.json names";
+                let advice =
+                    "Continue it with `--restart auto`, replace it with `--force`, or choose another one with `-o`";
                 return Err(occupied(path, found, advice));
             }
             (Some(_), Existing::Delete) => delete_run(path, &held)?,
@@ -171,14 +172,18 @@ fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
         return Err(occupied(
             directory,
             &held[0],
-            "but no run.json that names it; delete it by hand or give another -o",
+            "There is no run.json that lists it. Delete it, or choose another directory with `-o`",
         ));
     }
     let manifest = Manifest::read(directory)?;
     let mut doomed = doomed(directory, manifest.outputs.iter().map(|output| &*output.path))?;
     let named = |file: &String| file == MANIFEST || manifest.outputs.iter().any(|output| output.path == *file);
     if let Some(other) = held.iter().find(|file| !named(file)) {
-        return Err(occupied(directory, other, "its run.json does not name it; delete it by hand or give another -o"));
+        return Err(occupied(
+            directory,
+            other,
+            "Delete this file, which run.json does not list, or choose another directory with `-o`",
+        ));
     }
     // The manifest goes last: whatever interrupts this, it still names what is left.
     doomed.push(directory.join(MANIFEST));

@@ -10,7 +10,11 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum Error {
     /// A quantity of a point is infinite or not a number; nothing was written.
-    #[error("{}: {field} (component {component}) of point {point} is {value}; nothing was written", path.display())]
+    #[error(
+        "E0760: `{}` was not written: component {component} of `{field}` of material point {point} is {value}. The state of the run \
+         is invalid. Continue from an earlier checkpoint with smaller steps.",
+        path.display()
+    )]
     PointNotFinite {
         /// The file that was to be written.
         path: PathBuf,
@@ -24,7 +28,11 @@ pub enum Error {
         value: f64,
     },
     /// A number of a table or of the manifest is infinite or not a number; nothing was written.
-    #[error("{}: {item} is {value}; nothing was written", path.display())]
+    #[error(
+        "E0761: `{}` was not written: {item} is {value}. The state of the run is invalid. Continue from an earlier checkpoint with \
+         smaller steps.",
+        path.display()
+    )]
     NotFinite {
         /// The file that was to be written.
         path: PathBuf,
@@ -34,7 +42,10 @@ pub enum Error {
         value: f64,
     },
     /// A field or a row has another length than the frame or table needs.
-    #[error("{}: {item} has {found} values where {expected} are needed", path.display())]
+    #[error(
+        "E0762: `{}` was not written: {item} has {found} values, and {expected} are needed. This is a defect of the program. Report it.",
+        path.display()
+    )]
     Length {
         /// The file that was to be written.
         path: PathBuf,
@@ -46,7 +57,10 @@ pub enum Error {
         found: usize,
     },
     /// A name of a field or column that the file format cannot hold, or that stands there twice.
-    #[error("{}: the name \"{name}\" {reason}", path.display())]
+    #[error(
+        "E0763: `{}` was not written: the name \"{name}\" {reason}. The format does not allow it. Rename it.",
+        path.display()
+    )]
     Name {
         /// The file that was to be written.
         path: PathBuf,
@@ -56,7 +70,10 @@ pub enum Error {
         reason: &'static str,
     },
     /// The operating system refused to read or write a file.
-    #[error("cannot {action} {}: {source}", path.display())]
+    #[error(
+        "E0764: `{}`: the system cannot {action} it ({source}). The program stops. Check the path, its permissions and the disk.",
+        path.display()
+    )]
     File {
         /// What was tried: `read`, `write`, ...
         action: &'static str,
@@ -66,7 +83,10 @@ pub enum Error {
         source: io::Error,
     },
     /// A file is damaged, or none that this program wrote.
-    #[error("{} is no file that this program wrote, or it is damaged: {reason}", path.display())]
+    #[error(
+        "E0765: `{}` is damaged, or not a file of this program: {reason}. It is not read. Run the case again.",
+        path.display()
+    )]
     Format {
         /// The file.
         path: PathBuf,
@@ -74,7 +94,11 @@ pub enum Error {
         reason: String,
     },
     /// A checkpoint is damaged, or none that this program can go on from.
-    #[error("the checkpoint {} cannot be used: {reason}", path.display())]
+    #[error(
+        "E0720: checkpoint `{}` cannot be used: {reason}. The run was not continued. Name another one with `--restart FILE`, or start \
+         again with `--force`.",
+        path.display()
+    )]
     Checkpoint {
         /// The file that was looked at.
         path: PathBuf,
@@ -82,7 +106,11 @@ pub enum Error {
         reason: String,
     },
     /// There is no room for a file; nothing was written.
-    #[error("no room for {}: it needs {needed} bytes, {available}; nothing was written", path.display())]
+    #[error(
+        "E0766: no space for `{}`: it needs {needed} bytes, {available}. It was not written. Free space on the disk, and continue with \
+         `--restart auto`.",
+        path.display()
+    )]
     Space {
         /// The file that was to be written.
         path: PathBuf,
@@ -92,7 +120,10 @@ pub enum Error {
         available: String,
     },
     /// The output directory cannot be made, opened or written to.
-    #[error("cannot {action} the output directory {}: {source}", path.display())]
+    #[error(
+        "E0767: output directory `{}`: the system cannot {action} it ({source}). Nothing was run. Choose another one with `-o`.",
+        path.display()
+    )]
     Directory {
         /// What was tried.
         action: &'static str,
@@ -102,13 +133,19 @@ pub enum Error {
         source: io::Error,
     },
     /// The output directory's path leads to something that is no directory.
-    #[error("{} is not a directory", path.display())]
+    #[error(
+        "E0768: `{}` is not a directory. Results cannot be written there. Choose another path with `-o`.",
+        path.display()
+    )]
     NotDirectory {
         /// The path.
         path: PathBuf,
     },
     /// The output directory holds a run already.
-    #[error("the output directory {} holds {found} already: {advice}", path.display())]
+    #[error(
+        "E0769: output directory `{}` contains `{found}` of an earlier run. Nothing was run. {advice}.",
+        path.display()
+    )]
     Occupied {
         /// The directory.
         path: PathBuf,
@@ -118,7 +155,10 @@ pub enum Error {
         advice: &'static str,
     },
     /// Another run holds the output directory, or cannot be seen to be dead.
-    #[error("the output directory {} is held by {holder}: {advice}", path.display())]
+    #[error(
+        "E0770: output directory `{}` is in use by {holder}. Nothing was run. {advice}.",
+        path.display()
+    )]
     Locked {
         /// The directory.
         path: PathBuf,
@@ -128,7 +168,10 @@ pub enum Error {
         advice: &'static str,
     },
     /// A `run.json` names an output that this program would never have written there; nothing was deleted.
-    #[error("run.json in {} names \"{name}\" as an output, which {reason}; nothing was deleted", path.display())]
+    #[error(
+        "E0771: run.json in `{}` lists the output \"{name}\", which {reason}. Nothing was deleted. Delete the old files yourself.",
+        path.display()
+    )]
     UnsafeOutput {
         /// The directory.
         path: PathBuf,
@@ -153,6 +196,12 @@ impl Error {
             Self::File { .. } | Self::Format { .. } | Self::Space { .. } => exit::WRITE,
             Self::Checkpoint { .. } => exit::CHECKPOINT,
         }
+    }
+
+    /// The code of the cause, such as `E0764`: the first word of its text.
+    pub fn code(&self) -> String {
+        let text = self.to_string();
+        text.split(':').next().unwrap_or_default().to_owned()
     }
 
     /// For `map_err`: the system's error while `action` was done to the file `path`.

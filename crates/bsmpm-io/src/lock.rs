@@ -133,7 +133,7 @@ fn take_over(directory: &Path, (own, found): (&Holder, &FoundLock), unseen: Unse
         looks -= 1;
         match (looks, unseen) {
             (0, Unseen::Respect) => {
-                let advice = "it never finished; --break-lock if it is dead";
+                let advice = "Wait for it, or use `--break-lock` if it has ended";
                 return Err(locked(directory, "a run that was taking over the lock of another", advice));
             }
             (0, Unseen::Break) => {
@@ -181,15 +181,20 @@ impl FoundLock {
         let unknown = "a run that it does not name".to_owned();
         let name = self.holder.as_ref().map_or(unknown, Holder::to_string);
         let why = match self.holder.as_ref().map_or(Fate::Unseen, |holder| holder.fate(own, self.owner)) {
-            Fate::Alive => return Err(locked(directory, &name, "wait for its end, or give another with -o")),
+            Fate::Alive => {
+                return Err(locked(directory, &name, "Wait for it to end, or choose another directory with `-o`"));
+            }
             Fate::Gone(why) => why,
             Fate::Unseen if unseen == Unseen::Break => "by --break-lock",
             Fate::Unseen => {
-                let advice = "it cannot be seen from here whether that goes on; --break-lock if it does not";
+                let advice = "Wait for it, or use `--break-lock` if it has ended";
                 return Err(locked(directory, &name, advice));
             }
         };
-        Ok(format!("the output directory's lock was taken over from {name}: {why}"))
+        Ok(format!(
+            "W0737: the lock of the output directory was taken over from {name} ({why}). Two runs would destroy its files. Make sure that \
+             the other run has ended."
+        ))
     }
 }
 

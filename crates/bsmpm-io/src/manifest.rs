@@ -253,7 +253,10 @@ impl Manifest {
         let damaged = |error: serde_json::Error| Error::format(&path, error.to_string());
         let ManifestForm { schema } = serde_json::from_str(&text).map_err(damaged)?;
         if schema != SCHEMA {
-            return Err(Error::format(&path, format!("it has form {schema}, this program knows form {SCHEMA}")));
+            return Err(Error::format(
+                &path,
+                format!("it has format {schema}, and this program reads format {SCHEMA}"),
+            ));
         }
         serde_json::from_str(&text).map_err(damaged)
     }

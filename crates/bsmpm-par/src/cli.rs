@@ -1,9 +1,9 @@
 //! The command line of `bsmpm-par`.
 
-use crate::launch::say;
+use crate::launch::complain;
 use bsmpm_io::disk::size;
 use bsmpm_io::exit::USAGE;
-use clap::{Parser, ValueEnum};
+use clap::{ArgAction, Parser, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -21,6 +21,19 @@ pub enum LogFormat {
     Text,
     /// One JSON object a line.
     Json,
+}
+
+/// How a run shows its progress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressForm {
+    /// A line on a terminal, lines elsewhere; none with -q, -v or a log of JSON.
+    Auto,
+    /// One line that is overwritten.
+    Line,
+    /// A line after 10 s and then every 2 minutes.
+    Log,
+    /// None.
+    Off,
 }
 
 /// What a run goes on from.
@@ -49,55 +62,58 @@ pub enum FrameFormat {
 
 /// Implicit B-spline material point method: runs a case on one or more MPI ranks.
 #[derive(Clone, Debug, Parser)]
-#[command(name = "bsmpm-par", version, about)]
+#[command(name = "bsmpm-par", version)]
 pub struct Arguments {
     /// The case file (TOML).
     pub case: PathBuf,
-    /// Where everything is written [default: the case's stem with .out, in the working directory]
+    /// Directory of the results [default: the name of the case with .out, in the working directory]
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Override one key of the case, e.g. --set grid.cell="5 mm"; repeatable
+    /// Change one key of the case, e.g. --set grid.cell="5 mm"; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Validate the case, print the derived sizes, run nothing
+    /// Check the case and print its size; run nothing
     #[arg(long)]
     pub check: bool,
-    /// Replace a run in the output directory: deletes the files that its run.json names
+    /// Replace an earlier run in the output directory: delete the files that its run.json lists
     #[arg(long, conflicts_with = "restart")]
     pub force: bool,
-    /// Take over the output directory's lock from a run that cannot be seen to be dead, e.g. on another host
+    /// Take over the lock of the output directory from a run that may have ended, e.g. on another host
     #[arg(long)]
     pub break_lock: bool,
-    /// Go on from the newest good checkpoint in the output directory, or start where there is none; or from this one
-    /// only
+    /// Continue a run: from its newest intact checkpoint, or from the start if there is none (auto); or from this
+    /// checkpoint
     #[arg(long, value_name = "auto|FILE")]
     pub restart: Option<Restart>,
-    /// Stop when the run's step number reaches N (exit 75; 0 if the end was reached)
+    /// Stop after step N of the run (exit 75; 0 if the end was reached)
     #[arg(long, value_name = "N")]
     pub max_steps: Option<u64>,
-    /// Stop cleanly before this much time has passed (exit 75)
+    /// Stop with a checkpoint before this wall time has passed (exit 75)
     #[arg(long, value_name = "HH:MM:SS", value_parser = wall)]
     pub max_wall: Option<Duration>,
-    /// Form of the frames
+    /// File format of the frames
     #[arg(long, value_name = "FORMAT", default_value = "vtu")]
     pub frames: FrameFormat,
-    /// Cores of each rank, for the work on its points
+    /// Threads of each rank
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: u32,
-    /// Refuse a case that would need more memory on all ranks, e.g. 16GiB (exit 71) [default: what the first rank's
-    /// host has]
+    /// Do not run a case that needs more memory than this on all ranks, e.g. 16GiB (exit 71) [default: the memory of the
+    /// host of the first rank]
     #[arg(long, value_name = "SIZE", value_parser = size)]
     pub max_memory: Option<u64>,
-    /// Refuse a run whose frames and checkpoints may not fit on the disk (exit 74), instead of warning
+    /// Do not start a run whose frames and checkpoints may not fit on the disk (exit 74), instead of a warning
     #[arg(long)]
     pub strict_space: bool,
-    /// No log lines
+    /// Print only warnings, errors and why a run ends early
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Log rejected attempts in full, too
-    #[arg(short, long)]
-    pub verbose: bool,
-    /// Form of the log
+    /// Print a line for every step (-v), and every rejected attempt at a step (-vv)
+    #[arg(short, long, action = ArgAction::Count)]
+    pub verbose: u8,
+    /// Show the progress: on a terminal by one line that is overwritten, elsewhere by a line every 2 minutes
+    #[arg(long, value_name = "FORM", default_value = "auto")]
+    pub progress: ProgressForm,
+    /// Form of the log: text, or one JSON object a line with every event
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     pub log_format: LogFormat,
     /// Options for PETSc, after `--`, e.g. -- -ksp_type cg -pc_type gamg
@@ -117,7 +133,7 @@ impl Arguments {
         })?;
         arguments.admissible().map_err(|reason| {
             if print {
-                say(&format!("bsmpm-par: {reason}"));
+                complain(&reason);
             }
             USAGE
         })?;
@@ -126,7 +142,7 @@ impl Arguments {
 
     fn admissible(&self) -> Result<(), String> {
         if self.frames == FrameFormat::Vtkhdf {
-            return Err("--frames vtkhdf is not available yet; use vtu".into());
+            return Err("E0703: `--frames vtkhdf` is not available. Nothing was run. Use `--frames vtu`.".into());
         }
         petsc_options(&self.petsc)
     }
@@ -139,6 +155,38 @@ impl Arguments {
             PathBuf::from(name)
         })
     }
+
+    /// The command that continues this run on so many ranks, as a shell reads it.
+    pub fn continuing(&self, ranks: usize) -> String {
+        let launcher = match std::env::var(COMMAND) {
+            Ok(command) => command,
+            Err(_) if ranks > 1 => format!("mpirun -n {ranks} bsmpm-par"),
+            Err(_) => "bsmpm-par".into(),
+        };
+        let mut words = vec![launcher, quoted(&self.case.to_string_lossy())];
+        words.extend(self.set.iter().map(|set| format!("--set {}", quoted(set))));
+        words.extend(self.output.iter().map(|directory| format!("-o {}", quoted(&directory.to_string_lossy()))));
+        words.extend((self.threads > 1).then(|| format!("--threads {}", self.threads)));
+        words.push("--restart auto".into());
+        if !self.petsc.is_empty() {
+            words.push("--".into());
+            words.extend(self.petsc.iter().map(|option| quoted(option)));
+        }
+        words.join(" ")
+    }
+}
+
+/// The environment variable by which a script names the command that started the run.
+const COMMAND: &str = "BSMPM_COMMAND";
+
+/// A word as a shell reads it.
+fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.into()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
 }
 
 /// Refuses what could write files, attach debuggers or read more options.
@@ -149,25 +197,28 @@ fn petsc_options(options: &[String]) -> Result<(), String> {
         let allowed = begins && !PETSC_REFUSED.iter().any(|part| option.contains(part));
         if is_name && !allowed {
             return Err(format!(
-                "{option} is not among the PETSc options that may be given: {}",
-                PETSC_OPTIONS.join("* ")
+                "E0704: the PETSc option {option} is not allowed. Nothing was run. Use options that begin with {} or -log_view.",
+                PETSC_OPTIONS.join(", ")
             ));
         }
         if !is_name && PETSC_REFUSED.contains(&option.as_str()) {
-            return Err(format!("{option}: PETSc options must not load code"));
+            return Err(format!("E0705: the PETSc option {option} would load code. Nothing was run. Remove it."));
         }
         if !is_name && option.contains([':', '/']) {
-            return Err(format!("{option}: PETSc options must not name files"));
+            return Err(format!("E0706: the PETSc option {option} names a file. Nothing was run. Remove it."));
         }
     }
     // The value would be a viewer, and some of those write files of their own choice of name: binary, hdf5, vtk, ...
     let views = |name: &str| ["view", "monitor", "reason"].iter().any(|part| name.contains(part));
     let viewer = options.windows(2).find(|pair| views(&pair[0]) && !pair[1].starts_with('-'));
-    viewer.map_or(Ok(()), |pair| Err(format!("{} takes no value here, found {}", pair[0], pair[1])))
+    viewer.map_or(Ok(()), |pair| {
+        let (name, value) = (&pair[0], &pair[1]);
+        Err(format!("E0707: the PETSc option {name} has the value {value}. Nothing was run. Remove the value."))
+    })
 }
 
 fn wall(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("{text} is no time; expected HH:MM:SS");
+    let wrong = || format!("{text} is not a time of the form HH:MM:SS");
     let parts: Vec<u64> = text.split(':').map(|part| part.parse().map_err(|_| wrong())).collect::<Result<_, _>>()?;
     match parts[..] {
         [hours, minutes, seconds] if minutes < 60 && seconds < 60 && hours < 1_000_000 => {
@@ -208,6 +259,18 @@ mod tests {
         assert!(refused(&["-ksp_monitor", "ascii:pwned"]));
         assert!(refused(&["-ksp_view_mat", "binary"]));
         assert!(refused(&["-on_error_attach_debugger"]));
+    }
+
+    #[test]
+    fn the_command_that_continues_a_run_is_quoted_for_a_shell() {
+        let given =
+            "bsmpm-par it's.toml --force -q --set grid.cell=5_mm --max-steps 3 -o out --threads 2 -- -ksp_type cg";
+        let given = given.split(' ').map(|word| word.replace('_', " ").replace("ksp type", "ksp_type"));
+        let arguments = Arguments::parse_from(given);
+        let expected =
+            "bsmpm-par 'it'\\''s.toml' --set 'grid.cell=5 mm' -o out --threads 2 --restart auto -- -ksp_type cg";
+        assert_eq!(arguments.continuing(1), expected);
+        assert!(arguments.continuing(3).starts_with("mpirun -n 3 bsmpm-par "));
     }
 
     #[test]

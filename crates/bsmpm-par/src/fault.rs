@@ -24,9 +24,9 @@ impl Fault {
     pub fn from_environment(ranks: usize) -> Result<Option<Self>, String> {
         let Some(text) = std::env::var_os("BSMPM_FAULT") else { return Ok(None) };
         match Self::parse(&text.to_string_lossy())? {
-            Self { place: FaultPlace::Rank(rank), .. } if rank >= ranks => {
-                Err(format!("BSMPM_FAULT: there are {ranks} ranks only"))
-            }
+            Self { place: FaultPlace::Rank(rank), .. } if rank >= ranks => Err(format!(
+                "E0708: BSMPM_FAULT names a rank beyond the {ranks} rank(s) of this run. Nothing was run. Name another rank."
+            )),
             fault => Ok(Some(fault)),
         }
     }
@@ -43,8 +43,9 @@ impl Fault {
             };
             Some(Self { place, step: step.strip_prefix("step=")?.parse().ok()? })
         };
-        let forms = "expected panic:rank=R,step=N, kill:phase=P,step=N or reject:step=N";
-        read().ok_or_else(|| format!("BSMPM_FAULT={text}: {forms}"))
+        let forms = "panic:rank=R,step=N, kill:phase=P,step=N or reject:step=N";
+        read()
+            .ok_or_else(|| format!("E0709: BSMPM_FAULT = \"{text}\" is not understood. Nothing was run. Use {forms}."))
     }
 
     /// Whether this step is to be rejected when it has converged.

@@ -3,9 +3,12 @@
 //! The ranges are those of the shipped cases, coarse and fine, with methods that are known to be good.
 #![doc = include_str!("indicators.md")]
 
-mod advice;
 mod force_noise;
 mod limits;
+mod report;
+mod text;
+
+pub use report::{acceptance, description, line};
 
 use crate::record::Recorder;
 use crate::setup;
@@ -134,25 +137,9 @@ impl IndicatorState {
             ("energy-measure", summary.largest_energy_measure),
             ("water-measure", summary.largest_water_measure),
         ];
-        for (name, value) in measures {
-            let meaning = "largest of a step that was accepted by it, over its tolerance";
-            all.extend(value.map(|value| (name, Indicator::new(value, "-", meaning, [0.0, 1.0]))));
-        }
-        let (enough, most) = COMPRESSION;
-        let lost = |body: &&Body| self.compression[body.material];
-        let largest = |bodies: &mut dyn Iterator<Item = f64>| bodies.fold(0.0, f64::max);
-        let coarse = case
-            .bodies
-            .iter()
-            .filter(|body| body.points_per_cell < enough && case.solver.quadrature == Quadrature::Points);
-        let coarse = largest(&mut coarse.map(|body| lost(&body)));
-        let usual = [0.0, if coarse > most { most } else { 1.0 }];
-        let value = if coarse > most { coarse } else { largest(&mut case.bodies.iter().map(|body| lost(&body))) };
-        let meaning = "part of its volume that the most compressed material has lost";
-        all.push(("compression", Indicator::new(value, "-", meaning, usual)));
-        let slip = summary.largest_slip.map(|value| {
-            ("slip", Indicator::new(value, "-", "largest slip of a strip in a step, over its motion", [0.0, SLIP]))
-        });
+        all.extend(measures.into_iter().filter_map(|(name, value)| Some((name, at_most(1.0, value?)))));
+        all.push(("compression", self.compression(case)));
+        let slip = summary.largest_slip.map(|value| ("slip", at_most(SLIP, value)));
         let smoothed = summary.smoothing_passes.map(|passes| ("smoothing-length", smoothing(case, passes)));
         all.extend(slip.into_iter().chain(smoothed).chain(course(case, summary)));
         all.extend(shifts(self.interfaces, case));
@@ -162,56 +149,50 @@ impl IndicatorState {
         // JSON has no other numbers.
         all.retain(|(_, indicator)| indicator.value.is_finite());
         let judged = |(name, indicator): (&str, Indicator)| {
+            let [code, meaning, advice] = report::parts(&text::of(name, case, indicator.value), &indicator.meaning);
             let limited = indicator.limited(limits::of(name, case), limits::are_accepted(name, case));
-            (name.to_owned(), limited.advising(&advice::of(name, case)))
+            (name.to_owned(), Indicator { code, meaning, advice, ..limited })
         };
         all.into_iter().map(judged).collect()
     }
 
+    /// The volume that the most compressed material has lost. With enough points any is usual.
+    fn compression(&self, case: &Case) -> Indicator {
+        let (enough, most) = COMPRESSION;
+        let lost = |body: &&Body| self.compression[body.material];
+        let largest = |bodies: &mut dyn Iterator<Item = f64>| bodies.fold(0.0, f64::max);
+        let is_coarse = |body: &&Body| body.points_per_cell < enough && case.solver.quadrature == Quadrature::Points;
+        let coarse = largest(&mut case.bodies.iter().filter(is_coarse).map(|body| lost(&body)));
+        if coarse > most {
+            return at_most(most, coarse);
+        }
+        at_most(1.0, largest(&mut case.bodies.iter().map(|body| lost(&body))))
+    }
+
     /// Those of the state alone.
     fn rows(&self) -> Vec<(&'static str, Indicator)> {
-        let row = |name, value, meaning, most| (name, Indicator::new(value, "-", meaning, [0.0, most]));
         let mut rows = vec![
-            row(
-                "pressure-noise-average",
-                self.noise.about_average,
-                "RMS of the points' pressure about its average over the grid, over its mean magnitude",
-                NOISE[0],
-            ),
-            row(
-                "pressure-noise-plane",
-                self.noise.about_plane,
-                "the same about the least-squares plane through the cell and its neighbours",
-                NOISE[1],
-            ),
+            ("pressure-noise-average", at_most(NOISE[0], self.noise.about_average)),
+            ("pressure-noise-plane", at_most(NOISE[1], self.noise.about_plane)),
         ];
         if let Some(defect) = self.defect {
-            let meaning = "RMS over inner cells of the volume of a cell's points over that of the cell, less 1";
-            rows.push(row("quadrature-defect", defect.rms, meaning, DEFECT[0]));
-            rows.push(row("quadrature-defect-largest", defect.largest, "the largest of them", DEFECT[1]));
-            let meaning = "mean number of points in inner cells";
-            rows.push(("points-per-cell", Indicator::new(defect.points, "-", meaning, POINTS)));
+            rows.push(("quadrature-defect", at_most(DEFECT[0], defect.rms)));
+            rows.push(("quadrature-defect-largest", at_most(DEFECT[1], defect.largest)));
+            rows.push(("points-per-cell", Indicator::new(defect.points, "-", "", POINTS)));
         }
         if let Some(energy) = self.energy {
-            let meaning = "energy that is not accounted for, over the largest energy";
-            rows.push(row("energy-closure", energy.closure, meaning, ENERGY[0]));
-            let meaning = "energy that the algorithm lost (negative: made), over the largest energy";
-            let usual = [-ENERGY[1], ENERGY[1]];
-            rows.push(("energy-loss", Indicator::new(energy.loss, "-", meaning, usual)));
+            rows.push(("energy-closure", at_most(ENERGY[0], energy.closure)));
+            rows.push(("energy-loss", Indicator::new(energy.loss, "-", "", [-ENERGY[1], ENERGY[1]])));
         }
-        if let Some(growth) = self.growth {
-            let meaning = "largest excess of kinetic, elastic and dissipated energy over that of the start and all work \
-                           since, over the largest energy";
-            rows.push(row("energy-growth", growth, meaning, GROWTH));
-        }
-        if let Some(lost) = self.water {
-            let meaning = "water that is not accounted for, over the largest of what left through the ground's surface, what came \
-                           in there, and what its points took in and gave off: what the iterations leave, in a step up to \
-                           force_tolerance of what moves there or 1e-13 of the ground's volume";
-            rows.push(row("water-balance", lost, meaning, WATER));
-        }
+        rows.extend(self.growth.map(|growth| ("energy-growth", at_most(GROWTH, growth))));
+        rows.extend(self.water.map(|lost| ("water-balance", at_most(WATER, lost))));
         rows
     }
+}
+
+/// A value without a unit that is usual from 0 to `most`.
+fn at_most(most: f64, value: f64) -> Indicator {
+    Indicator::new(value, "-", "", [0.0, most])
 }
 
 /// Those of all steps together that need no more than their totals.
@@ -221,36 +202,25 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
     // Elastic bodies without weight are meant to hang on planes of symmetry; soil is not.
     let has_soil = case.bodies.iter().any(|body| case.materials[body.material].material.yields());
     let may_come_off = has_soil || case.gravity.is_some();
-    let pull = summary.largest_pull.zip(summary.largest_reaction).filter(|_| may_come_off).map(|(pull, largest)| {
-        let meaning =
-            "largest force with which a face of the grid pulled the body, over the largest reaction of a face";
-        ("support-pull", Indicator::new(share(pull, largest), "-", meaning, [0.0, PULL]))
-    });
+    let pull = summary.largest_pull.zip(summary.largest_reaction).filter(|_| may_come_off);
+    let pull = pull.map(|(pull, largest)| ("support-pull", at_most(PULL, share(pull, largest))));
     let setback = summary.largest_front_setback.map(|setback| {
-        let meaning = "the farthest that the front went back behind its farthest place";
-        ("front-setback", Indicator::new(setback, "m", meaning, [0.0, SETBACK * longest(&case.grid.axes[0])]))
+        let usual = [0.0, SETBACK * longest(&case.grid.axes[0])];
+        ("front-setback", Indicator::new(setback, "m", "", usual))
     });
     let [background, load_share] = of_background(case, summary);
     let loss = summary.largest_stiffness_loss.map(|loss| {
-        let meaning = "second-order work of elastic ground over the actual one, largest of the steps";
-        let failed = summary.failed_at.map(|t| format!(". The ground has failed under its load at t = {}", short(t)));
-        let meaning = format!("{meaning}{}", failed.unwrap_or_default());
-        ("stiffness-loss", Indicator::new(loss, "-", &meaning, [0.0, STIFFNESS_LOSS]))
+        let failed = summary.failed_at.map(|t| format!(", which failed at t = {},", short(t)));
+        ("stiffness-loss", Indicator::new(loss, "-", &failed.unwrap_or_default(), [0.0, STIFFNESS_LOSS]))
     });
     let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
-    let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic).map(|advance| {
-        let meaning = "the farthest that a point moved in a step, in cells";
-        ("step-advance", Indicator::new(advance / cell, "-", meaning, [0.0, ADVANCE]))
-    });
-    let beside = summary.beside_fixed.zip(summary.kinetic).map(|(excess, all)| {
-        let meaning = "kinetic energy that points within a cell of a fixed face have beyond that of their motion, over that of all \
-                       points, mean over the steps";
-        ("wall-velocity", Indicator::new(share(excess, all), "-", meaning, [-BESIDE, BESIDE]))
-    });
-    let penetration = summary.deepest_penetration.map(|depth| {
-        let meaning = "the deepest that a material point was in a rigid body after a step, in cells";
-        ("rigid-penetration", Indicator::new(depth, "-", meaning, [0.0, PENETRATION]))
-    });
+    let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic);
+    let advance = advance.map(|advance| ("step-advance", at_most(ADVANCE, advance / cell)));
+    let beside = summary
+        .beside_fixed
+        .zip(summary.kinetic)
+        .map(|(excess, all)| ("wall-velocity", Indicator::new(share(excess, all), "-", "", [-BESIDE, BESIDE])));
+    let penetration = summary.deepest_penetration.map(|depth| ("rigid-penetration", at_most(PENETRATION, depth)));
     [pull, setback, background, load_share, loss, advance, beside, penetration].into_iter().flatten()
 }
 
@@ -262,96 +232,42 @@ fn short(t: f64) -> f64 {
 /// What the soft background takes of the work, if there is one: over all steps, or where a limit load is read at the
 /// end of the run in the last one; and its force under dead load.
 fn of_background(case: &Case, summary: &Summary) -> [Option<(&'static str, Indicator)>; 2] {
-    let work = |value: f64, meaning| ("background-work", Indicator::new(value, "-", meaning, [0.0, BACKGROUND]));
-    let load = summary.background_forces.map(|shares| {
-        let meaning = "largest force of the soft background on a node over the RMS force of the nodes, added over the steps \
-                       without prescribed motion";
-        ("background-load-share", Indicator::new(shares, "-", meaning, [0.0, LOAD_SHARE]))
-    });
-    if case.limit_load.is_some() {
-        let meaning = "work done on the soft background in the last step, over the magnitudes of the works of the nodal \
-                       internal forces, or of the stresses where those are larger";
-        return [summary.last_background.map(|shares| work(shares.work, meaning)), load];
-    }
-    let meaning = "work done on the soft background in all steps, over the magnitudes of the works of the nodal internal \
-                   forces, or of the stresses where those are larger";
-    let part = summary.background_work.zip(summary.internal_work);
-    let share = |(soft, all): (f64, f64)| if soft == 0.0 { 0.0 } else { soft / all };
-    [part.map(|part| work(share(part), meaning)), load]
+    let load = summary.background_forces.map(|shares| ("background-load-share", at_most(LOAD_SHARE, shares)));
+    let part = match case.limit_load {
+        Some(_) => summary.last_background.map(|shares| shares.work),
+        None => {
+            let part = summary.background_work.zip(summary.internal_work);
+            part.map(|(soft, all)| if soft == 0.0 { 0.0 } else { soft / all })
+        }
+    };
+    [part.map(|part| ("background-work", at_most(BACKGROUND, part))), load]
 }
 
 /// How far interfaces have left their grid lines.
 fn shifts(found: InterfaceShift, case: &Case) -> impl Iterator<Item = (&'static str, Indicator)> {
     let most = if case.solver.quadrature == Quadrature::Fitted { SHIFT_FITTED } else { SHIFT };
-    let stress = found.stress.map(|moved| {
-        let meaning = "the farthest that an interface between materials has left its grid line, in cells";
-        ("interface-shift", Indicator::new(moved, "-", meaning, [0.0, most]))
-    });
-    let water = found.water.map(|moved| {
-        let meaning =
-            "the farthest that an interface between soils with unlike permeabilities has left its grid line, in cells";
-        ("permeability-shift", Indicator::new(moved, "-", meaning, [0.0, SHIFT_WATER]))
-    });
+    let stress = found.stress.map(|moved| ("interface-shift", at_most(most, moved)));
+    let water = found.water.map(|moved| ("permeability-shift", at_most(SHIFT_WATER, moved)));
     stress.into_iter().chain(water)
 }
 
 /// Cells across a footing.
 fn across_footing(cells: f64) -> Indicator {
-    let meaning = "cells across the width of the footing, of a half at a face of the grid across both halves";
-    Indicator::new(cells, "-", meaning, [FOOTING_CELLS, MANY_CELLS])
+    Indicator::new(cells, "-", "", [FOOTING_CELLS, MANY_CELLS])
 }
 
 /// Cells across the hole or notch that has the fewest.
 fn across(narrowest: &NarrowestOpening) -> Indicator {
     let NarrowestOpening { path, cells, least, .. } = narrowest;
-    let width = narrowest.brief_width();
-    let meaning = format!("cells across the hole or notch with the fewest at the start, {path} of {width} m");
-    Indicator::new(*cells, "-", &meaning, [*least, MANY_CELLS])
+    let which = format!("`{path}` ({} m wide)", narrowest.brief_width());
+    Indicator::new(*cells, "-", &which, [*least, MANY_CELLS])
 }
 
 /// How far so many passes of smoothing have reached.
 fn smoothing(case: &Case, passes: f64) -> Indicator {
-    let (meaning, part) = match case.stabilisation {
-        Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => (
-            "along which the elastic dilation was smoothed in all steps together, by the share of plastic flow, mean over the \
-             points; usual: up to 1.5 of the thinnest connected material",
-            SMOOTHED[1],
-        ),
-        _ => (
-            "along which the elastic strain was smoothed in all steps together, once in each; usual: up to a tenth of the \
-             thinnest connected material",
-            SMOOTHED[0],
-        ),
+    let part = match case.stabilisation {
+        Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => SMOOTHED[1],
+        _ => SMOOTHED[0],
     };
-    Indicator::new(setup::smoothing_length(case, passes), "m", meaning, [0.0, part * case.thinnest()])
-}
-
-/// All of them in a line.
-pub fn line(indicators: &BTreeMap<String, Indicator>) -> String {
-    let all = indicators.iter().map(|(name, found)| format!("{name} {:.2e}{}", found.value, unit(found)));
-    format!("indicators: {}", all.collect::<Vec<_>>().join(", "))
-}
-
-fn unit(indicator: &Indicator) -> String {
-    if indicator.unit == "-" { String::new() } else { format!(" {}", indicator.unit) }
-}
-
-/// What is to be said of an indicator that is outside its usual range.
-pub fn description(name: &str, found: &Indicator) -> String {
-    let [least, most] = found.usual.map(|value| format!("{value:.2e}"));
-    let advice = if found.advice.is_empty() { String::new() } else { format!("; {}", found.advice) };
-    let (value, verdict) = (format!("{:.2e}{}", found.value, unit(found)), verdict(name, found));
-    format!("{verdict}: {name} is {value}, usually {least} to {most}: {}{advice}", found.meaning)
-}
-
-/// How a value outside the usual range is judged.
-fn verdict(name: &str, found: &Indicator) -> String {
-    match found.limits.filter(|_| found.failed) {
-        None => "unusual".to_owned(),
-        Some(_) if found.accepted => "beyond its limit, which output.accept accepts".to_owned(),
-        Some([_, most]) => format!(
-            "failed (beyond its limit of {most}, the answer is likely to be wrong by 10 % or more; to accept it, \
-             output.accept = [\"{name}\"])"
-        ),
-    }
+    Indicator::new(setup::smoothing_length(case, passes), "m", "", [0.0, part * case.thinnest()])
 }

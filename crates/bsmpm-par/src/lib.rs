@@ -20,3 +20,4 @@ pub mod run;
 pub mod setup;
 pub mod source;
 mod space;
+mod terminal;

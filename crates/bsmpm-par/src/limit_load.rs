@@ -47,11 +47,15 @@ fn of_load(sought: &LimitLoad, load: &SoughtLoad, history: &Columns) -> Option<M
     })
 }
 
-/// A line on each of them.
+/// A line on each of them that was reached.
 pub fn report_lines(case: &Case, loads: &[ManifestLimitLoad]) -> Vec<String> {
     let averages = case.limit_load.as_ref().is_some_and(|sought| sought.averages);
-    let line = |load: &ManifestLimitLoad| if load.is_reached { reached(load, averages) } else { not_reached(load) };
-    loads.iter().map(line).collect()
+    loads.iter().filter(|load| load.is_reached).map(|load| reached(load, averages)).collect()
+}
+
+/// A warning of each of them that was not.
+pub fn warnings(loads: &[ManifestLimitLoad]) -> Vec<String> {
+    loads.iter().filter(|load| !load.is_reached).map(not_reached).collect()
 }
 
 fn reached(load: &ManifestLimitLoad, averages: bool) -> String {
@@ -61,11 +65,11 @@ fn reached(load: &ManifestLimitLoad, averages: bool) -> String {
     let expected = load.cells.map_or_else(String::new, |cells| {
         let [least, most] = errors.map(|error| 100.0 * error * STATED_CELLS / cells);
         format!(
-            ", with {cells:.1} cells across its width. Verified footings were {least:.0} to {most:.0} % too high with so many, which \
-             is the unsafe side. Extrapolate with `bsmpm limit-load`."
+            ", with {cells:.1} cells across its width. With so many cells, verified footings were {least:.0} to {most:.0} % too high, \
+             which is the unsafe side. Extrapolate with `bsmpm limit-load`."
         )
     });
-    format!("limit load of {name}{part}: {value:.4e} {unit}{expected}")
+    format!("Limit load of {name}{part}: {value:.4e} {unit}{expected}")
 }
 
 fn not_reached(load: &ManifestLimitLoad) -> String {
@@ -73,13 +77,20 @@ fn not_reached(load: &ManifestLimitLoad) -> String {
     let percent = 100.0 * change;
     if *value <= 0.0 {
         return format!(
-            "warning: no limit load of {name}: the ground does not resist it ({value:.4e} {unit}). Check that it touches the ground \
+            "W0726: `{name}` meets no resistance ({value:.4e} {unit} at the end). There is no limit load. Check that it touches the soil \
              and moves towards it."
         );
     }
-    let remedy = if *change > 0.0 { "Increase the prescribed displacement." } else { "Increase analysis.steps." };
-    format!(
-        "warning: no limit load of {name}: its load, {value:.4e} {unit} at the end, changed by {percent:+.1} % over the last quarter \
-         of the displacement. {remedy}"
-    )
+    let last = format!("{value:.4e} {unit}");
+    match *change > 0.0 {
+        true => format!(
+            "W0727: the load of `{name}` still grew by {percent:.1} % over the last quarter of its path, to {last}. There is no limit \
+             load yet. Increase the prescribed displacement."
+        ),
+        false => format!(
+            "W0728: the load of `{name}` fell by {:.1} % over the last quarter of its path, to {last}. There is no limit load. Increase \
+             `analysis.steps`.",
+            -percent
+        ),
+    }
 }

@@ -2,8 +2,9 @@
 //! allocated. Linux reports; elsewhere only the command line does.
 
 use crate::cli::Arguments;
-use crate::launch::say;
+use crate::launch::{complain, say};
 use bsmpm_io::exit;
+use bsmpm_messages::headed;
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -40,21 +41,14 @@ enum Limit {
 impl Display for Shortage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (needed, allowed) = (self.needed as f64 / GIB, self.allowed as f64 / GIB);
-        write!(f, "the case needs about {needed:.3} GiB ")?;
+        write!(f, "about {needed:.3} GiB ")?;
+        let ranks = self.ranks;
         match self.by {
-            Limit::Asked => write!(f, "on {} rank(s), more than --max-memory allows: {allowed:.3} GiB", self.ranks),
-            Limit::Process => {
-                let each = format!("on each of {} rank(s)", self.ranks);
-                write!(f, "{each}, and the limits of a process (ulimit -v, -d) leave it {allowed:.3} GiB")
-            }
-            Limit::Free | Limit::Group => {
-                let what = if self.by == Limit::Free { "are available" } else { "are allowed by its control group" };
-                write!(
-                    f,
-                    "for the {} rank(s) of this host, where {allowed:.3} GiB {what}; --max-memory SIZE would take the place \
-                     of what the host says",
-                    self.ranks
-                )
+            Limit::Asked => write!(f, "on {ranks} rank(s), and --max-memory allows {allowed:.3} GiB"),
+            Limit::Process => write!(f, "on each of {ranks} rank(s), and `ulimit` allows {allowed:.3} GiB"),
+            Limit::Free => write!(f, "for the {ranks} rank(s) of this host, where {allowed:.3} GiB are available"),
+            Limit::Group => {
+                write!(f, "for the {ranks} rank(s) of this host, whose control group allows {allowed:.3} GiB")
             }
         }
     }
@@ -73,12 +67,25 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
             limits.find_map(|limit| short(needed, (ranks, here), limit))
         };
         if let (None, Some(shortage)) = (shortage(estimate.bytes), shortage(estimate.bytes_with_newton)) {
-            say(&format!("warning: should a step need Newton's method, {shortage}"));
+            let text = format!(
+                "W0723: a step with Newton's method needs {shortage}. The run may be killed then. Use larger cells, or \
+                 more hosts."
+            );
+            say(&headed(&text, "warning"));
         }
         match shortage(estimate.bytes) {
-            Some(shortage) if arguments.check && shortage.by != Limit::Asked => say(&format!("warning: {shortage}")),
+            Some(shortage) if arguments.check && shortage.by != Limit::Asked => {
+                let text = format!(
+                    "W0724: the case needs {shortage}. It cannot be run here. Use larger cells, fewer points, or more hosts."
+                );
+                say(&headed(&text, "warning"));
+            }
             Some(shortage) => {
-                say(&format!("bsmpm-par: {shortage}; nothing was run or written"));
+                let text = format!(
+                    "E0702: the case needs {shortage}. Nothing was run or written. Use larger cells, fewer points or more hosts, \
+                     or set `--max-memory`."
+                );
+                complain(&text);
                 code = exit::MEMORY;
             }
             None => {}

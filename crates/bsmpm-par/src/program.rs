@@ -31,7 +31,7 @@ pub fn run(universe: &Universe) -> u8 {
 /// Prints a reason on rank 0 and hands the exit code on.
 fn refuse(universe: &Universe, code: u8, reason: &str) -> u8 {
     if universe.world().rank() == 0 {
-        launch::say(&format!("bsmpm-par: {reason}"));
+        launch::complain(reason);
     }
     code
 }
@@ -64,7 +64,7 @@ fn agreed<T>(universe: &Universe, code: u8, mine: Result<T, String>) -> Result<T
     let (first, own) = (world.rank() == 0, u8::from(mine.is_err()));
     let everywhere = world.size().unsigned_abs() as usize == bsmpm_ranks::launch::count(&world, own == 1);
     if let (Err(reason), true) = (&mine, first || !everywhere) {
-        launch::say(&format!("bsmpm-par: {reason}"));
+        launch::complain(reason);
     }
     let failed = bsmpm_ranks::launch::agree(&world, own * code);
     mine.map_err(|_| failed).and_then(|good| if failed == 0 { Ok(good) } else { Err(failed) })
@@ -74,13 +74,17 @@ fn agreed<T>(universe: &Universe, code: u8, mine: Result<T, String>) -> Result<T
 fn choose_lanes() -> Result<(), String> {
     let Some(name) = std::env::var_os("BSMPM_LANES") else { return Ok(()) };
     let name = name.to_string_lossy();
-    lanes::choose(&name).map_err(|error| format!("BSMPM_LANES={name}: {error}"))
+    lanes::choose(&name).map_err(|error| {
+        format!("E0710: BSMPM_LANES = \"{name}\" cannot be used: {error}. Nothing was run. Unset BSMPM_LANES.")
+    })
 }
 
 /// The threads that share the points of this rank; its own one is the first of them, so that one is none more.
 fn start_threads(count: u32) -> Result<(), String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count as usize).use_current_thread();
-    pool.build_global().map_err(|error| format!("{count} threads could not be started: {error}"))
+    pool.build_global().map_err(|error| {
+        format!("E0711: {count} threads could not be started: {error}. Nothing was run. Reduce `--threads`.")
+    })
 }
 
 /// Options of PETSc, each with its value if it has one, that have every solve reported: they wait for the run's own
@@ -109,16 +113,29 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
     let choice = setup::linear(case, ranks, &arguments.petsc);
     let (own, reports) = reports(&arguments.petsc);
     let options: Vec<&str> = choice.options().into_iter().chain(own).collect();
-    let petsc = Petsc::initialize(universe, &options).map_err(|error| format!("PETSc could not be started: {error}"));
+    let petsc = Petsc::initialize(universe, &options).map_err(|error| {
+        format!("E0712: PETSc could not be started: {error}. Nothing was run. Check the installation of PETSc.")
+    });
     let petsc = agreed(universe, exit::BUG, petsc)?;
-    let probed = linear::probe(&petsc, &choice).map_err(|error| format!("the linear solver cannot be used: {error}"));
+    let probed = linear::probe(&petsc, &choice).map_err(|error| {
+        format!("E0713: the linear solver cannot be used: {error}. Nothing was run. Choose another `solver.linear`.")
+    });
     agreed(universe, exit::CASE, probed)?;
     let set = reports.iter().try_for_each(|(name, value)| petsc.set_option(name, *value));
-    agreed(universe, exit::BUG, set.map_err(|error| format!("PETSc does not take an option: {error}")))?;
+    agreed(
+        universe,
+        exit::BUG,
+        set.map_err(|error| {
+            format!("E0714: PETSc refuses an option: {error}. Nothing was run. Correct the options after `--`.")
+        }),
+    )?;
     agreed(universe, exit::BUG, start_threads(arguments.threads))?;
-    let hdf5 = Hdf5::initialize(universe).map_err(|error| format!("HDF5 could not be started: {error}"));
+    let hdf5 = Hdf5::initialize(universe).map_err(|error| {
+        format!("E0715: HDF5 could not be started: {error}. Nothing was run. Check the installation of HDF5.")
+    });
     let hdf5 = agreed(universe, exit::BUG, hdf5)?;
-    let requests = Requests::of_signals().map_err(|error| format!("signals cannot be handled: {error}"));
+    let requests = Requests::of_signals()
+        .map_err(|error| format!("E0716: signals cannot be handled: {error}. Nothing was run. Report this."));
     let requests = Rc::new(agreed(universe, exit::BUG, requests)?);
     begin::run((universe, &hdf5), (&petsc, choice), task, cut, requests)
 }

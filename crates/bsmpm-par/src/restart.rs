@@ -132,27 +132,32 @@ fn resume<'h>(
     let opened = Opened::new((hdf5, universe.world()), &found)?;
     let state = CheckpointState::parse(&found.path, &opened.state()?)?;
     let past = &state.files.manifest;
-    let changed = there::admissible(&format!("the checkpoint {}", found.path.display()), past, case)?;
+    let changed = there::admissible(&format!("checkpoint `{}`", found.path.display()), past, case)?;
     let divided = |stage: &Stage| stage.strength_reduction.is_some() && stage.at <= state.progress.t;
     if let Some(change) = changed.iter().find(|change| change.is_of_later_strength())
         && past.stages.iter().any(|stage| stage.strength_reduction.is_some()) | case.stages.iter().any(divided)
     {
-        let reason =
-            format!("the checkpoint {} is of a run that has divided its strength: {change}", found.path.display());
+        let reason = format!(
+            "E0722: checkpoint `{}` is from a run that has reduced its strength, and {change}. It cannot be continued. Start the run \
+             again with `--force`.",
+            found.path.display()
+        );
         return Err(Refusal::new(exit::CHECKPOINT, reason));
     }
     let changed: Vec<String> = changed.iter().map(ToString::to_string).collect();
     let (t, end) = (state.progress.t, case.analysis.end);
     if t > end {
-        let reason =
-            format!("the checkpoint {} is at t = {t}, beyond the end of the case, {end}", found.path.display());
+        let reason = format!(
+            "E0723: checkpoint `{}` is at t = {t}, after the end of the case (t = {end}). It cannot be continued. Increase \
+             `analysis.end`.",
+            found.path.display()
+        );
         return Err(Refusal::new(exit::CHECKPOINT, reason));
     }
-    let mut warnings: Vec<String> =
-        passed_over.into_iter().map(|bad| format!("{bad}; an older checkpoint is used")).collect();
+    let mut warnings: Vec<String> = passed_over.iter().map(|bad| there::passed_over(bad)).collect();
     warnings.extend(there::other_machine(past, universe.world().size().unsigned_abs(), &found));
     warnings.extend(there::new_defaults(past, case));
-    warnings.extend(changed.iter().map(|change| format!("since the checkpoint, {change}")));
+    warnings.extend(changed.iter().map(|change| there::changed_since(change)));
     Ok(RunStart::Resumed(Box::new(Resumed { found, state, changed, warnings, restarts, opened })))
 }
 
@@ -177,13 +182,7 @@ impl Resumed<'_> {
     /// # Errors
     /// The same on all ranks (76): they are not of this case.
     pub fn lines(&self, case: &Case) -> Result<[Vec<Line>; 3], Refusal> {
-        let foreign = || {
-            let path = self.found.path.display();
-            Refusal::new(
-                exit::CHECKPOINT,
-                format!("the checkpoint {path} cannot be used: its grid lines are not of this grid"),
-            )
-        };
+        let foreign = || Refusal::unusable(&self.found.path, "its grid lines are not those of the case");
         self.state.lines(&case.grid).ok_or_else(foreign)
     }
 
@@ -205,12 +204,7 @@ impl Resumed<'_> {
         schedule: &Schedule,
     ) -> Result<(Slabs, Points<D>, Stepper), Refusal> {
         let world = universe.world();
-        let foreign = |what: &str| {
-            Refusal::new(
-                exit::CHECKPOINT,
-                format!("the checkpoint {} cannot be used: {what}", self.found.path.display()),
-            )
-        };
+        let foreign = |what: &str| Refusal::unusable(&self.found.path, what);
         let names: Vec<&str> = self.found.record.arrays.iter().map(|array| array.name.as_str()).collect();
         let laws = case.materials.iter().map(|named| &named.material);
         let width = bsmpm::material::state_width(laws);
@@ -220,14 +214,14 @@ impl Resumed<'_> {
         let present = (!case.stages.is_empty() || left > 0).then(|| case.ids_at(self.state.progress.t));
         let known = (model.materials.len(), present.as_deref(), left);
         checkpoint::require(&world, &self.found.path, &mut points, &model.grid, known)?;
-        let held = self.state.within(&model.grid).ok_or_else(|| foreign("its room is not of this grid"))?;
-        let past = self.cut(&held).ok_or_else(|| foreign("its slabs are not of this grid"))?;
+        let held = self.state.within(&model.grid).ok_or_else(|| foreign("its active domain is not one of the grid"))?;
+        let past = self.cut(&held).ok_or_else(|| foreign("its partition is not one of the grid"))?;
         let (grid, slabs) = self.slabs(universe, case, (&held, &past), &points)?;
         model.grid = grid;
         let rank = world.rank().unsigned_abs() as usize;
         let window = model.grid.window_of(slabs.cells(rank, model.grid.room()));
         migrate::points((&world, &Traffic::default()), &slabs, &window, &mut points);
-        points.surface = self.state.surface().ok_or_else(|| foreign("its surfaces are not of this case"))?;
+        points.surface = self.state.surface().ok_or_else(|| foreign("its surfaces are not those of the case"))?;
         let surface = model.boundary.surface();
         let sizes = |lists: &[Vec<_>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
         let same = sizes(&points.surface.traction) == sizes(&surface.traction)
@@ -245,7 +239,7 @@ impl Resumed<'_> {
             && (anchors.water.is_empty()
                 || lengths(&anchors.water) == wet.iter().map(|points| points.len()).collect::<Vec<_>>());
         if !same || !anchored {
-            return Err(foreign("its surfaces are not of this case"));
+            return Err(foreign("its surfaces are not those of the case"));
         }
         let columns = self.state.free_field.iter().map(|column| column.points(width)).collect::<Option<Vec<_>>>();
         let sound = |column: &Points<D>| column.material.iter().all(|&law| usize::from(law) < model.materials.len());
@@ -254,12 +248,12 @@ impl Resumed<'_> {
         let expected = if self.state.steps > 0 { followers } else { 0 };
         points.free_field = columns
             .filter(|columns| columns.len() == expected)
-            .ok_or_else(|| foreign("the columns of its free field are not of this case"))?;
+            .ok_or_else(|| foreign("its free-field columns are not those of the case"))?;
         let guess = self.guess((&held, &past), &window)?;
         let is_finite = guess.iter().all(|value| value.is_finite());
         agree(&world, if is_finite { Ok(()) } else { Err(foreign("a nodal displacement is not finite")) })?;
         let stepper = Stepper::resume(guess, self.state.progress, schedule);
-        Ok((slabs, points, stepper.ok_or_else(|| foreign("its step control is in no state it can be in"))?))
+        Ok((slabs, points, stepper.ok_or_else(|| foreign("the state of its step control is invalid"))?))
     }
 
     /// The cut that the run had; `None` if it is not one of the grid that is `held`.

@@ -8,6 +8,7 @@ mod save;
 mod stage;
 mod start;
 mod step_warnings;
+mod summary;
 
 use crate::cli::Arguments;
 use crate::fault::Fault;
@@ -21,8 +22,7 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
 use bsmpm::step::StepReport;
 use bsmpm_io::exit;
-use bsmpm_io::manifest::{Communication, SolverNames, Status};
-use bsmpm_messages::headed;
+use bsmpm_io::manifest::{Communication, SolverNames};
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
 use bsmpm_scene::Case;
@@ -33,6 +33,7 @@ use save::Saving;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 use std::time::Instant;
+use summary::StopCause;
 
 /// What is to be run, and how.
 #[derive(Debug)]
@@ -63,6 +64,7 @@ pub struct Run<'p, K, const D: usize> {
     told_rigid: BTreeSet<usize>,
     hdf5: &'p Hdf5<'p>,
     saving: Saving,
+    stop_cause: Option<StopCause>,
     before: Before,
 }
 
@@ -121,6 +123,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             told_rigid: std::mem::take(&mut before.told_rigid),
             hdf5,
             saving,
+            stop_cause: None,
             before,
         }
     }
@@ -137,10 +140,11 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             let step = self.simulation.steps() + 1;
             let due = self.due(slowest);
             if due.stop && self.simulation.time() < self.case.analysis.end {
-                return self.end(Status::Stopped, exit::STOPPED);
+                let limit = self.limit();
+                return self.stop(limit);
             }
             if self.simulation.halo.is_interrupted() && self.simulation.time() < self.case.analysis.end {
-                return self.stop_on_request();
+                return self.stop(StopCause::Signal);
             }
             let saved = if due.checkpoint { self.checkpoint() } else { Ok(()) };
             if let Err(code) = saved.and_then(|()| self.save_on_request()) {
@@ -161,7 +165,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
                     }
                 }
                 Some(Err(failure)) if failure.is_interruption() && self.simulation.halo.is_interrupted() => {
-                    return self.stop_on_request();
+                    return self.stop(StopCause::Signal);
                 }
                 Some(Err(failure)) if failure.is_interruption() => self.make_again(step),
                 Some(Err(failure)) => return self.fail(&failure),
@@ -173,12 +177,15 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
     /// A step was given up by a fault on demand, which strikes once.
     fn make_again(&mut self, step: u64) {
         self.fault = None;
-        self.warn(format!("step {step} converged and was rejected, as BSMPM_FAULT wants; it is made again"));
+        self.warn(format!(
+            "W0725: step {step} was rejected after it converged, as BSMPM_FAULT requests. It is repeated. Unset BSMPM_FAULT outside of \
+             tests."
+        ));
     }
 
     /// A warning, reported and kept.
     fn warn(&mut self, warning: String) {
-        self.log.line("warning", &headed(&warning, "warning"));
+        self.log.warning("warning", &warning);
         if let Some(ledger) = &mut self.ledger
             && !ledger.manifest().warnings.contains(&warning)
         {

@@ -97,23 +97,23 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
     };
     let mut choices = Vec::new();
     if case.geometry == Geometry::Axisymmetric {
-        let reason = "x is the radius: histories and this file are of the whole circle (N, J, kg, m3), 2 pi times what acts \
-                      on a radian, of which frames have the points' volumes; a point load is all of its ring";
+        let reason = "x is the radius. Histories and run.json are of the whole circle (N, J, kg, m3); the volumes of material \
+                      points in frames are per radian. A point load is the total of its ring";
         choices.push(choice("geometry", "axisymmetric", reason));
     }
     if case.flow.is_some() && case.solver.nonlinear == bsmpm_scene::Nonlinear::Auto {
-        let reason = "water that flows: all recent secants on both systems by turns (fixed stress); Newton's method with \
-                      the complete derivative where they come to no end, preconditioned by both; then shorter steps";
+        let reason = "coupled flow: quasi-Newton with multiple secants on soil and water in turn (fixed-stress split); Newton's \
+                      method if it does not converge; then shorter steps";
         choices.push(choice("solver.nonlinear", "multisecant, newton", reason));
     } else if case.solver.nonlinear == bsmpm_scene::Nonlinear::Auto {
-        let reason = "all recent secants on the stiffness at the first guess, in fewer iterations than Broyden's update; \
-                      Newton's method with the complete derivative where they stall; then shorter steps";
+        let reason = "quasi-Newton with multiple secants, based on the stiffness of the predictor; Newton's method if it stalls; \
+                      then shorter steps";
         choices.push(choice("solver.nonlinear", "multisecant, newton", reason));
     }
     if let Some(parts) = parts(case, ranks).filter(|parts| *parts > 1) {
         let reason = match case.grid.dims() {
-            3 => "slabs along x, each cut along y: so the largest face between two ranks is the least",
-            _ => "more ranks than columns along x: slabs are cut along y, too",
+            3 => "partition along x and then along y, which keeps the interfaces between ranks small",
+            _ => "more ranks than columns of cells along x: the partition is along y, too",
         };
         choices.push(choice("ranks", &format!("{} slabs of {parts} parts", ranks / parts), reason));
     }
@@ -122,13 +122,13 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
         choices.push(choice("weights of averages", "volume", "materials differ in density, or some have none"));
     }
     if case.footing.is_some() || !case.prescribed.is_empty() {
-        let reason = "E of the stiffest material over the smallest cell, times a factor; the traction is carried from step \
-                      to step, so that the slips of all steps add up to pressure / penalty";
+        let reason = "a multiple of the largest Young's modulus over the smallest cell. The traction is kept from step to step, so \
+                      that the total slip is pressure / penalty";
         choices.push(choice("penalty of rigid strips", &format!("{:.6e} Pa/m", penalty(case)), reason));
     }
     if let Some((length, size)) = smoothing(case, bsmpm_scene::model::nominal_steps(case)) {
         let reason = format!(
-            "sqrt(steps (q+1)/6) h of modified-f-bar at the nominal steps; the thinnest connected material has {size} m"
+            "sqrt(steps (degree+1)/6) h of modified-f-bar for the nominal number of steps; the thinnest body has {size} m"
         );
         choices.push(choice("smoothing length", &format!("{length:.3e} m"), &reason));
     }
@@ -140,26 +140,26 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::M
     let newton = case.solver.nonlinear != bsmpm_scene::Nonlinear::Broyden;
     let mut rows = Vec::new();
     if case.solver.linear.factor == Some(DISSECTION) && !linear.dissection {
-        rows.push(("solver.linear.factor", "mumps", "options after -- say how PETSc solves"));
+        rows.push(("solver.linear.factor", "mumps", "options after -- select the solver of PETSc"));
     }
     if linear.redundant && (newton || !linear.dissection) {
-        let reason = "solver.reproducible: every rank factorises the whole system, as a parallel factorisation need not \
-                      repeat to the bit";
+        let reason = "solver.reproducible: every rank factorises the whole system, because a parallel factorisation may not be \
+                      reproducible to the bit";
         rows.push((if linear.dissection { "newton_pc_type" } else { "solver.linear.pc" }, "redundant", reason));
     }
     if case.solver.linear_on(ranks) != case.solver.linear && linear.dissection {
-        rows.push(("solver.linear", "direct", "multigrid over the grid's splines is for one rank"));
+        rows.push(("solver.linear", "direct", "spline multigrid works on one rank only"));
     } else if case.solver.linear_on(ranks) != case.solver.linear {
-        let reason = "multigrid on several ranks need not repeat to the bit, as solver.reproducible wants; with false it takes \
-                      fewer iterations";
+        let reason = "solver.reproducible: multigrid on several ranks may not be reproducible to the bit; with false it takes fewer \
+                      iterations";
         rows.push(("solver.linear", "incomplete-cholesky", reason));
     }
     if case.solver.reproducible && ranks > 1 && linear.whole_nodes() {
-        rows.push(("solver.reproducible", "false", "multigrid on several ranks need not repeat to the bit"));
+        rows.push(("solver.reproducible", "false", "multigrid on several ranks may not be reproducible to the bit"));
     }
     if linear.factor.as_deref() == Some("mumps") && !linear.dissection {
-        rows.push(("mat_mumps_icntl_7", "2", "ordering by minimum fill, the cheapest for plane grids"));
-        rows.push(("mat_mumps_icntl_14", "100", "the estimated workspace is at times too little"));
+        rows.push(("mat_mumps_icntl_7", "2", "ordering by minimum fill, the fastest for plane grids"));
+        rows.push(("mat_mumps_icntl_14", "100", "the estimated workspace may be too small"));
     }
     let owned = |(key, value, reason): (&str, &str, &str)| manifest::ManifestChoice {
         key: key.into(),
@@ -176,9 +176,9 @@ pub fn warnings(case: &Case, ranks: usize) -> Vec<String> {
         smoothing(case, bsmpm_scene::model::nominal_steps(case)).filter(|(length, size)| length > &(SMALL * size))
     {
         warnings.push(format!(
-            "modified-f-bar smooths the elastic strain once a step, whatever the step's length: over all steps along about \
-             {length:.2e} m, where the thinnest connected material has {size} m; results belong to their number of \
-             steps"
+            "W0729: `modified-f-bar` smooths strains over about {length:.2} m in all steps (limit: {:.2} m). Results depend on the \
+             number of steps. Use `consistent-f-bar`.",
+            SMALL * size
         ));
     }
     warnings

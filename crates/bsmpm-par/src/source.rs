@@ -1,11 +1,11 @@
 //! The case file: read by rank 0, parsed by every rank from the same bytes.
 
 use crate::cli::Arguments;
-use crate::launch::say;
+use crate::launch::{complain, say};
 use crate::memory;
 use crate::setup;
 use bsmpm_io::exit::{CASE, MISSING};
-use bsmpm_messages::headed;
+use bsmpm_messages::{headed, with_context};
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -18,7 +18,7 @@ pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u
     let name = arguments.case.display().to_string();
     let bytes = broadcast(world, || {
         bsmpm_scene::load(&arguments.case).map_err(|error| {
-            say(&format!("bsmpm-par: {name}: {}", headed(&error.to_string(), "error")));
+            complain(&with_context(&error.to_string(), &name));
             if error.kind() == ErrorKind::InvalidData { CASE } else { MISSING }
         })
     })?;
@@ -69,7 +69,7 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         format!("nodes            {}", estimate.nodes),
         format!("unknowns         at most {}{pressures}", estimate.unknowns),
         format!("memory           about {} MiB on each of {ranks} rank(s){newton}", each(estimate.bytes)),
-        format!("ranks            at most {}, of use about {}", case.most_ranks(), estimate.useful_ranks),
+        format!("ranks            at most {}, useful: about {}", case.most_ranks(), estimate.useful_ranks),
         format!("nominal steps    {}", bsmpm_scene::model::nominal_steps(case)),
     ];
     if let Some(narrowest) = &case.opening {

@@ -37,12 +37,21 @@ pub fn admit<K: Kinematics<D>, const D: usize>(
 ) -> Result<Option<String>, Refusal> {
     let need = Need::of(world, (held, arguments.force), case, simulation);
     let shortage = held.and_then(|held| need.shortage(held, arguments.force));
-    let strict = |warning: String| Refusal::new(exit::WRITE, format!("{warning}; nothing was run"));
-    let warning = match shortage {
-        Some(warning) if arguments.strict_space => Err(strict(warning)),
-        warning => Ok(warning),
+    let refused = |room: String| {
+        let reason = format!(
+            "E0701: the disk of {room}. The run would stop early, so nothing was run. Free space on the disk, or remove \
+             `--strict-space`."
+        );
+        Refusal::new(exit::WRITE, reason)
     };
-    agree(world, warning)
+    let warning = |room| {
+        format!("W0722: the disk of {room}. The run may stop early. Free space on the disk, or write fewer frames.")
+    };
+    let outcome = match shortage {
+        Some(room) if arguments.strict_space => Err(refused(room)),
+        room => Ok(room.map(warning)),
+    };
+    agree(world, outcome)
 }
 
 impl Need {
@@ -98,15 +107,12 @@ impl Need {
         let mebibytes = |bytes: u64| bytes as f64 / MIB;
         (free < self.bytes()).then(|| {
             format!(
-                "the disk of {} has {:.1} MiB left, and the run may write {:.1} MiB: {} frame(s) of {:.1} MiB, {} checkpoint(s) \
-                 of {:.1} MiB at a time",
+                "`{}` has {:.1} MiB left, and the run may write {:.1} MiB ({} frames, {} checkpoints)",
                 held.path().display(),
                 mebibytes(free),
                 mebibytes(self.bytes()),
                 self.frames,
-                mebibytes(self.frame),
-                self.checkpoints,
-                mebibytes(self.checkpoint)
+                self.checkpoints
             )
         })
     }

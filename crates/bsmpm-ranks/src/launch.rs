@@ -20,11 +20,14 @@ pub enum LaunchFailure {
 impl fmt::Display for LaunchFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoMpi => write!(f, "MPI could not be started"),
+            Self::NoMpi => write!(
+                f,
+                "E0772: MPI could not be started. Nothing was run. Check the installation of MPI, and the command that starts the run."
+            ),
             Self::Apart(processes) => write!(
                 f,
-                "the launcher started {processes} processes, but each is a run of its own: \
-                 the launcher and this program use different MPI libraries"
+                "E0773: the launcher started {processes} processes that do not find each other. Nothing was run. Use the mpirun of the MPI \
+                 library of this program."
             ),
         }
     }
@@ -77,7 +80,13 @@ fn abort_on_panic(end: fn(&SimpleCommunicator, &str) -> !) {
         let text = panic.payload();
         let text = text.downcast_ref::<&str>().copied().or_else(|| text.downcast_ref::<String>().map(String::as_str));
         let reason = text.unwrap_or("no reason given");
-        end(&world, &format!("panic on rank {}{place}: {reason}; please report it", world.rank()));
+        end(
+            &world,
+            &format!(
+                "E0774: panic on rank {}{place}: {reason}. This is a defect of the program. Report it with the case file.",
+                world.rank()
+            ),
+        );
     }));
 }
 

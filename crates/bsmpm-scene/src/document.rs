@@ -5,13 +5,27 @@ use crate::report::{Report, shortened};
 use crate::source::Source;
 use toml::de::{DeTable, DeValue};
 
+mod syntax;
 mod write;
+
+use syntax::SyntaxError;
 
 /// A value with its place.
 #[derive(Clone, Debug)]
 pub(crate) struct Node {
     pub(crate) origin: Origin,
     pub(crate) value: Value,
+}
+
+impl Node {
+    /// Whether it is a text or a list with one.
+    pub(crate) fn is_worded(&self) -> bool {
+        match &self.value {
+            Value::Text(_) => true,
+            Value::List(items) => items.iter().any(Self::is_worded),
+            _ => false,
+        }
+    }
 }
 
 /// A value of TOML. Numbers are kept as text, without underscores.
@@ -66,15 +80,9 @@ impl Node {
 /// The document in `source`; syntax errors go to `report`, one per line.
 pub(crate) fn parse(source: &Source<'_>, report: &mut Report<'_>) -> DocumentTable {
     let (table, errors) = DeTable::parse_recoverable(source.text);
-    let mut last_line = None;
-    for error in errors {
-        let origin = error.span().map_or(Origin::Nowhere, |span| Origin::Text(span.start));
-        let line = error.span().map(|span| source.line(span.start));
-        if line.is_none() || line != last_line {
-            report.error(origin, "", format!("E0005: the line does not follow the TOML format: {}.", error.message()));
-        }
-        last_line = line;
-    }
+    let errors: Vec<SyntaxError<'_>> =
+        errors.iter().map(|error| SyntaxError { span: error.span(), message: error.message() }).collect();
+    syntax::report_all(source, &errors, report);
     let place = |span: std::ops::Range<usize>| Origin::Text(span.start);
     entries(table.get_ref(), &place)
 }

@@ -37,6 +37,7 @@ mod region;
 mod report;
 mod seed;
 mod sketch;
+mod slips;
 mod source;
 mod spectrum;
 mod validate;

@@ -67,8 +67,8 @@ impl Case {
     pub fn too_many(&self, ranks: usize) -> String {
         let [columns, rows] = self.columns_and_rows();
         format!(
-            "E0850: the grid has {columns} columns of {rows} cells, too few for {ranks} ranks. Use at most {columns} ranks, or a \
-             number m n with m up to {columns} and n up to {rows}."
+            "E0850: the grid has {columns} columns of {rows} cells, too few for {ranks} ranks. Use at most {columns} ranks, or \
+             m x n ranks with m up to {columns} and n up to {rows}."
         )
     }
 }

@@ -15,7 +15,7 @@ mod waves;
 use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
 use crate::error::Origin;
 use crate::record;
-use crate::report::Report;
+use crate::report::{Report, brief};
 use crate::schema::ROOT;
 use crate::source::Source;
 use crate::words::{Accuracy, Geometry, Order, Word};
@@ -248,7 +248,7 @@ impl Completion<'_, '_> {
         let given = |table: &DocumentTable| keys.iter().any(|key| table.get(key).is_some());
         match self.document.get(table) {
             Some(DocumentEntry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
-            _ => self.report.error(self.choice.origin, self.choice.key, message),
+            _ => self.report.consequence(self.choice.origin, self.choice.key, message, scene::BASIS),
         }
     }
 
@@ -272,9 +272,11 @@ impl Completion<'_, '_> {
     fn doubt(&mut self, thin: Option<(f64, f64)>) {
         if let Some((side, cell)) = thin {
             self.report.warn(format!(
-                "W0203: {ACCURACY}: a body of {side} m has fewer than {FEWEST} cells across ({cell} m each). Its stresses \
-                 are inaccurate. Set grid.cell to at most {} m.",
-                side / FEWEST
+                "W0203: {ACCURACY}: a body of {} m has fewer than {FEWEST} cells across ({} m each). Its stresses are \
+                 inaccurate. Set grid.cell to at most {} m.",
+                brief(side),
+                brief(cell),
+                brief(side / FEWEST)
             ));
         }
     }

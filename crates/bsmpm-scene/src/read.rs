@@ -6,7 +6,7 @@ use crate::report::Report;
 use crate::schema::ROOT;
 use crate::source::{Source, decode};
 use crate::validate::CaseUse;
-use crate::{document, earlier, overrides, preset, record, validate};
+use crate::{document, earlier, overrides, preset, record, slips, validate};
 
 impl Case {
     /// The case in `text`, the content of the file `name`, with overrides `KEY=VALUE` merged in their order.
@@ -49,6 +49,7 @@ impl Case {
             report.error(Origin::Nowhere, "", "E0003: the file is empty or has only comments. Check its name.");
             return Err(report.into_errors());
         }
+        slips::mend(&mut document, &mut report);
         let filled = preset::fill(&mut document, &source, overrides, &mut report);
         let record = record::read(&ROOT, &document, &mut report);
         let as_written = overrides.is_empty() && !filled && !report.has_renamings();

@@ -5,16 +5,23 @@ mod value;
 
 use crate::document::{self, DocumentTable, Node, Value};
 use crate::error::Origin;
-use crate::nearest::nearest;
-use crate::report::{Report, shortened};
-use crate::schema::{Group, Key, Kind, Presence, Table, answer};
+use crate::report::Report;
+use crate::schema::{Group, Key, Kind, Presence, Table};
+use crate::slips;
 use crate::unit::Dimension;
 use crate::words::{AnalysisType, Geometry, Word};
-use bsmpm_messages::code_of;
 pub(crate) use value::UNREAD;
 
 /// Of a key of the language that this version does not have.
 const NOT_YET: &str = "E0012: this key is not available yet. Delete it.";
+/// Keys that the words of others stand for, and these others.
+const FILLED: &[&str] = &["cell", "knots", "degree", "points_per_cell", "steps", "dt", "method"];
+const FILLED_BY: &[&str] = &["accuracy", "analysis.purpose"];
+
+/// The keys whose words would give one of these a value.
+fn filled_by(keys: &[&str]) -> &'static [&'static str] {
+    if keys.iter().any(|key| FILLED.contains(key)) { FILLED_BY } else { &[] }
+}
 
 /// A table whose keys and values are as the schema says.
 #[derive(Clone, Debug)]
@@ -31,7 +38,16 @@ struct RecordField {
     key: &'static str,
     origin: Origin,
     written: bool,
+    /// a text, or a list with one, as a number with its unit is
+    is_worded: bool,
     datum: Option<Datum>, // None: an error has been reported
+}
+
+impl RecordField {
+    /// A key that the file does not give.
+    fn absent(key: &'static str, origin: Origin, datum: Option<Datum>) -> Self {
+        Self { key, origin, written: false, is_worded: false, datum }
+    }
 }
 
 /// A value of a known type; quantities are in SI, angles in degrees.
@@ -102,7 +118,7 @@ impl Context {
         path: &str,
         report: &mut Report<'_>,
     ) -> Record {
-        self.unknown_keys(table, written, path, report);
+        slips::report_unknown(table, written, path, report);
         let mut record = Record { path: path.to_owned(), origin, root: self.root, table, fields: Vec::new() };
         for key in table.keys {
             let path = join(path, key.name);
@@ -115,23 +131,29 @@ impl Context {
                 }
                 (Some(entry), _) => {
                     let datum = self.datum(&key.kind, &entry.node, &path, report);
-                    record.fields.push(RecordField { key: key.name, origin: entry.node.origin, written: true, datum });
+                    record.fields.push(RecordField {
+                        key: key.name,
+                        origin: entry.node.origin,
+                        written: true,
+                        is_worded: entry.node.is_worded(),
+                        datum,
+                    });
                 }
                 (None, Presence::Required) => {
                     let message = format!("E0014: this key is missing. Add it; its value is {}.", key.kind);
-                    report.error(origin, &path, message);
-                    record.fields.push(RecordField { key: key.name, origin, written: false, datum: None });
+                    report.missing(origin, &record.path, &[key.name], message, filled_by(&[key.name]));
+                    record.fields.push(RecordField::absent(key.name, origin, None));
                 }
                 (None, Presence::Default(text)) => {
                     let datum = self.default(&key.kind, text, (origin, &path), report);
-                    record.fields.push(RecordField { key: key.name, origin, written: false, datum });
+                    record.fields.push(RecordField::absent(key.name, origin, datum));
                 }
                 (None, Presence::Optional | Presence::Later | Presence::Retired) => {}
             }
         }
-        let mut reported = Vec::new();
+        let mut reported = ReportedGroups::default();
         for group in table.exclusive {
-            exclusive(group, written, (&record, &mut reported), report);
+            exclusive(group, written, &record, &mut reported, report);
         }
         record
     }
@@ -202,63 +224,35 @@ impl Context {
         }
         (records.len() == items.len()).then_some(Datum::Records(records))
     }
-
-    fn unknown_keys(self, table: &'static Table, written: &DocumentTable, path: &str, report: &mut Report<'_>) {
-        const SHOWN: usize = 50;
-        let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
-        for entry in unknown.by_ref().take(SHOWN) {
-            report.error(entry.origin, &join(path, &entry.key), self.unknown_key(table, &entry.key));
-        }
-        if let Some(entry) = unknown.next() {
-            let message = format!(
-                "E0009: {} more unknown keys follow here and are not listed. Correct those above first.",
-                unknown.count() + 1
-            );
-            report.error(entry.origin, path, message);
-        }
-    }
-
-    fn unknown_key(self, table: &'static Table, key: &str) -> String {
-        if let Some(answer) = answer(table, key) {
-            return match code_of(answer) {
-                Some(_) => answer.to_owned(),
-                None => format!("E0011: the key `{}` does not exist in {}. {answer}", shortened(key), table.header),
-            };
-        }
-        let names = || table.keys.iter().filter(|key| key.presence != Presence::Retired).map(|key| key.name);
-        let elsewhere = || self.root.all().into_iter().find(|other| other.key(key).is_some());
-        let hint = match (nearest(key, names()), elsewhere()) {
-            (Some(name), _) => format!("; did you mean `{name}`?"),
-            (None, Some(other)) => format!("; it belongs to {}", other.header),
-            (None, None) => String::new(),
-        };
-        let known: Vec<&str> = names().collect();
-        let end = if hint.ends_with('?') { "" } else { "." };
-        format!(
-            "E0011: the key `{}` does not exist in {}{hint}{end} Known keys: {}.",
-            shortened(key),
-            table.header,
-            known.join(", ")
-        )
-    }
 }
 
 pub(crate) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-/// What is wrong with a group of keys; of two of which it was `reported` by another group nothing.
+/// What has been reported of the groups of a table.
+#[derive(Default)]
+struct ReportedGroups<'a> {
+    /// keys that are both given
+    pairs: Vec<[&'a str; 2]>,
+    /// keys of groups without any
+    missing: Vec<&'static str>,
+}
+
+/// What is wrong with a group of keys; nothing of two that were reported with another group, nor of a group that has
+/// keys in common with one that is missing.
 fn exclusive<'a>(
-    group: &Group,
+    group: &'static Group,
     written: &'a DocumentTable,
-    (record, reported): (&Record, &mut Vec<[&'a str; 2]>),
+    record: &Record,
+    reported: &mut ReportedGroups<'a>,
     report: &mut Report<'_>,
 ) {
     let given: Vec<_> = group.keys.iter().filter_map(|key| written.get(key)).collect();
     if let [first, second, ..] = given[..]
-        && !reported.contains(&[&first.key, &second.key])
+        && !reported.pairs.contains(&[&first.key, &second.key])
     {
-        reported.push([&first.key, &second.key]);
+        reported.pairs.push([&first.key, &second.key]);
         let message = format!(
             "E0016: `{}` is given too, but only one of the keys {} is allowed. Delete one of them.",
             first.key,
@@ -266,9 +260,11 @@ fn exclusive<'a>(
         );
         report.error(second.origin, &join(&record.path, &second.key), message);
     }
-    if given.is_empty() && group.required {
+    let is_reported = group.keys.iter().any(|key| reported.missing.contains(key));
+    if given.is_empty() && group.required && !is_reported {
+        reported.missing.extend(group.keys);
         let message = format!("E0014: none of the keys {} is given. Add one of them.", group.keys.join(", "));
-        report.error(record.origin, &record.path, message);
+        report.missing(record.origin, &record.path, group.keys, message, filled_by(group.keys));
     }
 }
 
@@ -308,6 +304,11 @@ impl Record {
         self.field(key).is_some_and(|field| field.written)
     }
 
+    /// Whether the file gives the key with a unit, so that its author has said which one is meant.
+    pub(crate) fn has_unit(&self, key: &str) -> bool {
+        self.field(key).is_some_and(|field| field.is_worded)
+    }
+
     /// Place of the key's value, or of the table where there is none.
     pub(crate) fn place(&self, key: &str) -> Origin {
         self.field(key).map_or(self.origin, |field| field.origin)
@@ -316,6 +317,11 @@ impl Record {
     /// Path of a key of this table.
     pub(crate) fn path_of(&self, key: &str) -> String {
         join(&self.path, key)
+    }
+
+    /// Records an error about the key that follows from another one if that is about one of the `causes`.
+    pub(crate) fn consequence(&self, key: &str, message: impl Into<String>, causes: &[&str], report: &mut Report<'_>) {
+        report.consequence(self.place(key), &self.path_of(key), message, causes);
     }
 
     /// Records an error about the key.

@@ -1,6 +1,7 @@
 //! Collects what is wrong, doubtful or chosen while a case is read, each thing once and in the file's order.
 
 use crate::error::{Choice, Error, Origin, Place};
+use crate::record::join;
 use crate::source::Source;
 use crate::words::RemovedWord;
 use bsmpm_messages::{code_of, without_code};
@@ -14,10 +15,23 @@ const MOST: usize = 100;
 pub(crate) struct Report<'a> {
     source: &'a Source<'a>,
     overrides: &'a [String],
-    errors: Vec<(Origin, Error)>,
+    errors: Vec<ReportedError>,
+    /// paths of keys whose name was guessed
+    assumed: Vec<String>,
     warnings: Vec<String>,
     pub(crate) notes: Vec<Choice>,
     renamings: Vec<Renaming>,
+}
+
+/// An error with what it is about.
+#[derive(Debug)]
+struct ReportedError {
+    origin: Origin,
+    error: Error,
+    /// key paths, mostly its own
+    about: Vec<String>,
+    /// key paths; where another error is about one of them, this one only follows from it
+    causes: Vec<String>,
 }
 
 /// An earlier name that the case has, the name of now, and the key paths that have it.
@@ -48,22 +62,60 @@ impl Merged {
 
 impl<'a> Report<'a> {
     pub(crate) fn new(source: &'a Source<'a>, overrides: &'a [String]) -> Self {
-        Self { source, overrides, errors: Vec::new(), warnings: Vec::new(), notes: Vec::new(), renamings: Vec::new() }
+        Self {
+            source,
+            overrides,
+            errors: Vec::new(),
+            assumed: Vec::new(),
+            warnings: Vec::new(),
+            notes: Vec::new(),
+            renamings: Vec::new(),
+        }
     }
 
     /// Records an error at `origin` that concerns the key path `key`. `message` begins with its code.
     pub(crate) fn error(&mut self, origin: Origin, key: &str, message: impl Into<String>) {
-        self.record(origin, key, message.into(), None);
+        self.about(origin, key, message, Vec::new());
+    }
+
+    /// Records an error at `origin` that concerns the key path `key` and others that it leaves without a value.
+    pub(crate) fn about(&mut self, origin: Origin, key: &str, message: impl Into<String>, mut others: Vec<String>) {
+        others.push(key.to_owned());
+        let error = self.placed(origin, key, message.into(), None);
+        self.errors.push(ReportedError { origin, error, about: others, causes: Vec::new() });
+    }
+
+    /// Records an error that only follows from another one if that is about one of the `causes`: then it is not printed.
+    pub(crate) fn consequence(&mut self, origin: Origin, key: &str, message: impl Into<String>, causes: &[&str]) {
+        let causes = causes.iter().map(|cause| (*cause).to_owned()).collect();
+        let error = self.placed(origin, key, message.into(), None);
+        self.errors.push(ReportedError { origin, error, about: vec![key.to_owned()], causes });
+    }
+
+    /// Records that some keys of a table are missing, which may follow from errors about them or about `others`.
+    pub(crate) fn missing(&mut self, origin: Origin, table: &str, keys: &[&str], message: String, others: &[&str]) {
+        let paths: Vec<String> = keys.iter().map(|key| join(table, key)).collect();
+        let causes = paths.iter().cloned().chain(others.iter().map(|cause| (*cause).to_owned())).collect();
+        let place = if let [key] = &paths[..] { key } else { table };
+        let error = self.placed(origin, place, message, None);
+        self.errors.push(ReportedError { origin, error, about: paths, causes });
+    }
+
+    /// Records that the name of a key is wrong, and that its value is taken for that of `assumed`.
+    pub(crate) fn slip(&mut self, origin: Origin, key: &str, message: String, assumed: &str) {
+        self.assumed.push(assumed.to_owned());
+        self.about(origin, key, message, vec![assumed.to_owned()]);
     }
 
     /// Records that the value of `key` is a word that this version does not have any more.
     pub(crate) fn removed(&mut self, origin: Origin, key: &str, word: &'static RemovedWord) {
         let RemovedWord { word: text, last, remedy } = word;
         let message = format!("E0018: the value \"{text}\" was removed after {last}. {remedy}");
-        self.record(origin, key, message, Some(word));
+        let error = self.placed(origin, key, message, Some(word));
+        self.errors.push(ReportedError { origin, error, about: vec![key.to_owned()], causes: Vec::new() });
     }
 
-    fn record(&mut self, origin: Origin, key: &str, message: String, removed: Option<&'static RemovedWord>) {
+    fn placed(&self, origin: Origin, key: &str, message: String, removed: Option<&'static RemovedWord>) -> Error {
         let (place, excerpt) = match origin {
             Origin::Text(offset) => {
                 let (place, excerpt) = self.source.locate(offset);
@@ -75,7 +127,7 @@ impl<'a> Report<'a> {
         let (file, key) = (self.source.name.to_owned(), shortened(key));
         let code = code_of(&message).map(str::to_owned);
         let message = without_code(&message).to_owned();
-        self.errors.push((origin, Error { file, place, key, code, message, removed, excerpt }));
+        Error { file, place, key, code, message, removed, excerpt }
     }
 
     /// Records a warning: its code, the key that it concerns if there is one, and the text (`W0001: KEY: TEXT`).
@@ -140,13 +192,37 @@ impl<'a> Report<'a> {
         !self.errors.is_empty()
     }
 
-    /// The errors in the order of the file, without repetitions; those of overrides last.
+    /// Drops errors that only follow from others, unless nothing would be left.
+    fn drop_consequences(&mut self) {
+        let all = KeyCounts::of(self.errors.iter().flat_map(|reported| &reported.about));
+        let follows = |reported: &ReportedError| {
+            let own = KeyCounts::of(reported.about.iter());
+            let has_other = |cause: &String| all.concerned(cause) > own.concerned(cause);
+            self.is_of_guess(&reported.error.key) || reported.causes.iter().any(has_other)
+        };
+        let is_dropped: Vec<bool> = self.errors.iter().map(follows).collect();
+        if is_dropped.iter().all(|dropped| *dropped) {
+            return;
+        }
+        let mut dropped = is_dropped.into_iter();
+        self.errors.retain(|_| !dropped.next().unwrap_or(false));
+    }
+
+    /// Whether a key path is that of a value, or of an item of it, whose key's name was guessed.
+    fn is_of_guess(&self, path: &str) -> bool {
+        let is_item = |rest: &str| rest.chars().all(|c| c.is_ascii_digit() || c == '.');
+        self.assumed.iter().any(|assumed| path.strip_prefix(assumed.as_str()).is_some_and(is_item))
+    }
+
+    /// The errors in the order of the file, without repetitions and without those that only follow from others; those
+    /// of overrides last.
     pub(crate) fn into_errors(mut self) -> Vec<Error> {
-        self.errors.sort_by_key(|(origin, _)| *origin);
+        self.drop_consequences();
+        self.errors.sort_by_key(|reported| reported.origin);
         let mut seen = HashSet::new();
         let once =
             |error: &Error| seen.insert((format!("{:?}", error.place), error.key.clone(), error.message.clone()));
-        let mut errors: Vec<Error> = self.errors.into_iter().map(|(_, error)| error).filter(once).collect();
+        let mut errors: Vec<Error> = self.errors.into_iter().map(|reported| reported.error).filter(once).collect();
         if errors.len() > MOST {
             let more = errors.len() - MOST;
             errors.truncate(MOST);
@@ -156,6 +232,36 @@ impl<'a> Report<'a> {
         }
         errors
     }
+}
+
+/// How often key paths occur, by themselves and as the beginning of others.
+#[derive(Default)]
+struct KeyCounts<'a> {
+    whole: HashMap<&'a str, usize>,
+    beginning: HashMap<&'a str, usize>,
+}
+
+impl<'a> KeyCounts<'a> {
+    fn of(paths: impl Iterator<Item = &'a String>) -> Self {
+        let mut counts = Self::default();
+        for path in paths {
+            *counts.whole.entry(path).or_default() += 1;
+            beginnings(path).for_each(|part| *counts.beginning.entry(part).or_default() += 1);
+        }
+        counts
+    }
+
+    /// Number of paths that are this one, a part of it, or the table of the file that it is in.
+    fn concerned(&self, path: &str) -> usize {
+        let count = |counts: &HashMap<&str, usize>, path: &str| counts.get(path).copied().unwrap_or(0);
+        let table = beginnings(path).next();
+        count(&self.whole, path) + count(&self.beginning, path) + table.map_or(0, |table| count(&self.whole, table))
+    }
+}
+
+/// The tables and lists that a key path lies in, by their paths.
+fn beginnings(path: &str) -> impl Iterator<Item = &str> {
+    path.match_indices('.').map(|(at, _)| &path[..at])
 }
 
 /// Names in words: all of up to three, of more the first and the number of the others.

@@ -20,6 +20,7 @@ mod opening;
 mod output;
 mod physics;
 mod place;
+mod plausible;
 mod profile;
 mod ratio;
 mod reduction;
@@ -178,6 +179,7 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     body::warn_of_overlap(&case, report);
     gap::check(&case, report);
     approach::check(&case, report);
+    plausible::check(&case, record, report);
     solver::of_case(&mut case, record, report);
     physics::walls(&mut case, record, report);
     solver::warn_of_background(&case, report);

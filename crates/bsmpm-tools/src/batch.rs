@@ -74,7 +74,7 @@ impl Batch<'_> {
         let outcome = outcome.unwrap_or_else(|error| Outcome::broken(error.to_string()));
         let reason = match outcome.state {
             RunState::Done => String::new(),
-            RunState::Stopped => format!("at time {}", short(outcome.time())),
+            RunState::Stopped => format!("stopped at time {}", short(outcome.time())),
             _ => outcome.reason,
         };
         Outcome { reason, ..outcome }

@@ -8,7 +8,7 @@ use clap::{Parser, Subcommand};
 
 use crate::{Error, compare, element, estimate, explain, fos, limit_load, plot, slurm, sweep, validate, verify_case};
 
-/// Starts runs of bsmpm-par, and looks at what they left.
+/// Starts runs of bsmpm-par, and evaluates their results.
 #[derive(Debug, Parser)]
 #[command(name = "bsmpm", version)]
 pub struct Cli {
@@ -24,21 +24,21 @@ pub enum Command {
     Plot(plot::PlotArguments),
     /// Draw one quantity of several runs in one picture, or print it as a table
     Compare(Box<compare::CompareArguments>),
-    /// Run the cases of a matrix and judge their histories against references
+    /// Run the cases of a matrix and compare their histories with reference values
     Validate(validate::ValidateArguments),
     /// Find the factor of safety of a case by strength reduction
     Fos(fos::FosArguments),
-    /// Find the load under which the ground fails at what is moved, on two to four grids, and extrapolate it
+    /// Find the ultimate load of a footing or another prescribed motion on two to four grids, and extrapolate it
     LimitLoad(Box<limit_load::LimitLoadArguments>),
-    /// Vary settings of a case and weigh the error of its results against their cost
+    /// Vary settings of a case, and compare the errors and the costs of the results
     Sweep(Box<sweep::SweepArguments>),
     /// Run a case on three grids: observed order, extrapolated values, grid convergence index
     VerifyCase(verify_case::VerifyArguments),
     /// Tell what a case will cost before it is run: time, memory, disk
     Estimate(Box<estimate::EstimateArguments>),
-    /// Compute laboratory tests of a case's materials, one point each
+    /// Compute laboratory tests (one material point) of the materials of a case
     Element(element::ElementArguments),
-    /// Write a job script for Slurm that queues itself again until the case is done
+    /// Write a job script for Slurm that resubmits itself until the case is done
     Slurm(slurm::SlurmArguments),
     /// Explain messages by their codes: what each means, why it matters, what to do
     Explain(explain::ExplainArguments),
@@ -64,7 +64,7 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             let counts = validate::run(arguments, |part| print(&format!("{part}\n"), &[]))?;
             let known = match counts.known {
                 0 => String::new(),
-                rows => format!("{rows} row(s) fail as the matrix says\n"),
+                rows => format!("{rows} row(s) fail as the matrix expects\n"),
             };
             print(&format!("\n{known}{} passed, {} failed\n", counts.passed, counts.failed), &[]);
             if counts.failed > 0 {
@@ -132,7 +132,7 @@ mod tests {
         ("could not be written", WRITE),
         ("no stable state", NO_CONVERGENCE),
         ("no limit was reached", NO_CONVERGENCE),
-        ("no run came to its end", NO_CONVERGENCE),
+        ("no run was completed", NO_CONVERGENCE),
         ("done, whatever", DONE),
         ("estimated", DONE),
     ];
@@ -153,6 +153,6 @@ mod tests {
             }
             seen += 1;
         }
-        assert_eq!(seen, 7);
+        assert_eq!(seen, 8);
     }
 }

@@ -24,17 +24,17 @@ const OF_QUANTITIES: [&str; 11] =
 /// What to compare.
 #[derive(Clone, Debug, Args)]
 pub struct CompareArguments {
-    /// The output directories of the runs, which may go on or have stopped
+    /// Output directories of the runs, which may be running or stopped
     #[arg(required = true, value_name = "DIR")]
     pub directories: Vec<PathBuf>,
-    /// The column of history.csv along the horizontal axis, or the quantity that it records
+    /// Column of history.csv along the horizontal axis, or its quantity
     #[arg(long, value_name = "COLUMN", default_value = "time")]
     pub x: String,
-    /// The column of history.csv along the vertical axis, or the quantity that it records
+    /// Column of history.csv along the vertical axis, or its quantity
     #[arg(long, value_name = "COLUMN", required_unless_present = "residuals")]
     pub y: Option<String>,
-    /// Instead of a quantity: both measures of every iteration of this step, on logarithmic axes; from residuals.csv,
-    /// which `[output] residuals = true` writes
+    /// Instead of a quantity: the residuals (energy and force) of every iteration of this step, on logarithmic axes;
+    /// from residuals.csv, which `output.residuals = true` writes
     #[arg(long, value_name = "STEP", conflicts_with_all = OF_QUANTITIES)]
     pub residuals: Option<u64>,
     /// Multiplies the column along the horizontal axis
@@ -43,29 +43,29 @@ pub struct CompareArguments {
     /// Multiplies the column along the vertical axis
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = number, allow_hyphen_values = true)]
     pub y_scale: f64,
-    /// Text at the horizontal axis [default: the column and its unit]
+    /// Label of the horizontal axis [default: the column and its unit]
     #[arg(long, value_name = "TEXT")]
     pub x_label: Option<String>,
-    /// Text at the vertical axis [default: the column and its unit]
+    /// Label of the vertical axis [default: the column and its unit]
     #[arg(long, value_name = "TEXT")]
     pub y_label: Option<String>,
-    /// Text above the picture [default: the title of the cases, if they share one]
+    /// Title of the picture [default: the title of the cases, if it is the same]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
-    /// Name of a run, once for every DIR [default: its stabilisation where that distinguishes the runs, else DIR]
+    /// Name of a run, once for every DIR [default: its stabilisation if that differs, else DIR]
     #[arg(long = "label", value_name = "NAME")]
     pub labels: Vec<String>,
-    /// A level across the picture; repeatable
+    /// Horizontal line in the picture; repeatable
     #[arg(long = "line", value_name = "VALUE[=TEXT]", value_parser = level, allow_hyphen_values = true)]
     pub lines: Vec<ChartLevel>,
-    /// Points to compare with, as they are seen in the picture: a CSV file with a line of names and columns x,y;
+    /// Reference points in the units of the picture: a CSV file with columns x,y below a line with their names;
     /// repeatable
     #[arg(long = "reference", value_name = "FILE")]
     pub references: Vec<PathBuf>,
-    /// Only the last row of every run; runs of one label are one curve, and a row each in the table
+    /// Only the last row of every run; runs with the same label form one curve
     #[arg(long)]
     pub last: bool,
-    /// The x of a run, once for every DIR, instead of a column
+    /// Value of a run along the horizontal axis, once for every DIR, instead of a column
     #[arg(
         long = "x-value",
         value_name = "V",
@@ -75,13 +75,13 @@ pub struct CompareArguments {
         allow_hyphen_values = true
     )]
     pub x_values: Vec<f64>,
-    /// The picture [default: compare.png, or with --table none]
+    /// File of the picture [default: compare.png, or with --table none]
     #[arg(short, long, value_name = "FILE.png")]
     pub output: Option<PathBuf>,
     /// Print the curves as a table
     #[arg(long)]
     pub table: bool,
-    /// The x of the table's rows, between which the runs are interpolated [default: round numbers, with --last all]
+    /// Values of x for the rows of the table; the runs are interpolated [default: round numbers; with --last all]
     #[arg(
         long,
         value_name = "X,...",
@@ -105,7 +105,11 @@ impl CompareArguments {
 }
 
 fn number(text: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "a finite number".to_owned())
+    text.trim()
+        .parse()
+        .ok()
+        .filter(|number: &f64| number.is_finite())
+        .ok_or_else(|| "expected a finite number".to_owned())
 }
 
 fn level(text: &str) -> Result<ChartLevel, String> {

@@ -21,7 +21,7 @@ pub enum Error {
         reason: String,
     },
     /// A file of reference points cannot be understood.
-    #[error("the reference {}: {reason}", path.display())]
+    #[error("E0844: `{}` cannot be used: {reason}. Correct the file.", path.display())]
     BadReference {
         /// The file.
         path: PathBuf,
@@ -29,7 +29,10 @@ pub enum Error {
         reason: String,
     },
     /// A picture could not be drawn.
-    #[error("cannot draw {}: {reason}", path.display())]
+    #[error(
+        "E0845: the picture {} cannot be drawn: {reason}. This is a fault of `bsmpm`; please report it.",
+        path.display()
+    )]
     Drawing {
         /// The picture.
         path: PathBuf,
@@ -37,12 +40,12 @@ pub enum Error {
         reason: String,
     },
     /// Rows of a validation have failed.
-    #[error("{failed} row(s) of the validation failed")]
+    #[error("E0808: {failed} row(s) of the validation failed. Look at the table in the output directory.")]
     NotValid {
         /// How many.
         failed: usize,
     },
-    /// The case has errors.
+    /// The case has errors, each of which has its code.
     #[error("{}\n{}: {} error(s); nothing was run", errors.join("\n"), path.display(), errors.len())]
     BadCase {
         /// The file.
@@ -50,8 +53,8 @@ pub enum Error {
         /// Each with its place.
         errors: Vec<String>,
     },
-    /// The case has no factor of safety, or none that could be trusted.
-    #[error("{} has no factor of safety:\n  {}\nnothing was run", path.display(), reasons.join("\n  "))]
+    /// The case has no factor of safety, or none that could be trusted; each reason has its code.
+    #[error("{}\n{}: no factor of safety; nothing was run", reasons.join("\nerror "), path.display())]
     NoFactor {
         /// The file.
         path: PathBuf,
@@ -66,8 +69,8 @@ pub enum Error {
     },
     /// A trial of a search failed because a rigid body slipped, which says nothing of the ground.
     #[error(
-        "rigid body \"{name}\" slips in the trial of the {value} {trial}, and nothing else holds it: this is no failure of the \
-         ground. Take that motion out of its `free`, increase its friction, or replace it by a [[traction]]"
+        "E0826: rigid body `{name}` slips in the trial of the {value} {trial}, held by friction only. The soil \
+         does not fail. Remove the motion from its `free`, or use a [[traction]] instead."
     )]
     LooseBody {
         /// What trials differ by.
@@ -87,13 +90,13 @@ pub enum Error {
         failed: Vec<String>,
     },
     /// No run of several came to its end.
-    #[error("no run came to its end; {} says why", table.display())]
+    #[error("E0834: no run was completed, so there are no results. {} gives the reason for each.", table.display())]
     NoResult {
         /// The table of them.
         table: PathBuf,
     },
     /// A run that is needed ended for a reason of its own.
-    #[error("{what} ended with exit code {code}: {reason}")]
+    #[error("E0802: {what} failed with exit code {code}, but its result is needed: {reason}")]
     Run {
         /// Which one.
         what: String,
@@ -103,7 +106,7 @@ pub enum Error {
         reason: String,
     },
     /// The solver could not be started.
-    #[error("cannot start {program}: {source}")]
+    #[error("E0801: the solver `{program}` cannot be started: {source}. Give its path after `--`.")]
     Launch {
         /// The first word of the command.
         program: String,
@@ -118,12 +121,19 @@ pub enum Error {
 impl Error {
     /// That of a directory that holds no run.
     pub(crate) fn no_run(directory: &Path) -> Self {
-        Self::Missing { reason: format!("{} is not the directory of a run: it holds no run.json", directory.display()) }
+        let reason = format!(
+            "E0842: {} is not the output directory of a run: it has no run.json. Give a directory that bsmpm-par \
+             wrote.",
+            directory.display()
+        );
+        Self::Missing { reason }
     }
 
     /// Those of a case, or of reference points, that cannot be read.
     pub(crate) fn unread(what: &str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
-        move |source| Self::Missing { reason: format!("cannot read the {what} {}: {source}", path.display()) }
+        move |source| Self::Missing {
+            reason: format!("E0843: the {what} {} cannot be read: {source}. Check the path.", path.display()),
+        }
     }
 
     /// That of a case with errors.

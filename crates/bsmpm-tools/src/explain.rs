@@ -45,7 +45,7 @@ fn line(Page { code, title, .. }: &Page) -> String {
 
 fn explained(code: &str) -> Result<String, Error> {
     let unknown = || Error::Usage {
-        reason: format!("There is no message with the code `{code}`. List all codes: bsmpm explain"),
+        reason: format!("E0849: there is no message with the code `{code}`. List all codes with `bsmpm explain`."),
     };
     let Page { code, title, text } = page(code).ok_or_else(unknown)?;
     let mut explanation = format!("{code}: {title}\n\n{}\n\nThe program prints:\n", text.replace("**", ""));

@@ -45,41 +45,44 @@ const NARROWEST: f64 = 1e-4;
 /// What to search, and how.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Every trial is the case with [strength_reduction] factor = F, loaded from zero, and is judged by its displacement: what the
-material of a block of two cells along each axis has moved at least, so that a single point does not decide. The factor
-of safety is where the branch after failure (5 to 20 times the elastic displacement), continued back, meets the branch
-before it; coarsely, where the elastic displacement has doubled. Both are printed as bands [last stable, first failed]. A
-trial without equilibrium counts as failed. The elastic displacement is that of the trial 0: every material by its elastic
-law, without strength that could limit the stress. --region restricts all this to the material of a box.
+The search runs trials: the case with its strength divided by a factor F, loaded from zero. A trial is judged by
+the displacement that all material of a block of two cells along each axis exceeds, so that a single material
+point does not decide. A trial without equilibrium counts as failed. Trial 0 has elastic soil and gives the
+elastic displacement.
 
-With --seismic DIRECTION the strength stays as it is. Trials differ by a horizontal acceleration of k times the vertical
-gravity that pushes the ground to that side; the critical seismic coefficient is the k at which it fails, found in the
-same manner. Displacements are compared with those of the elastic body under the same inertia. Pore pressures are those
-of vertical gravity.
+The factor of safety is at the kink of the curve of displacement against factor: the branch after failure (5 to
+20 times the elastic displacement) is extended back to the branch before it. A rough check is the factor at
+which the elastic displacement doubles. Both are printed as bands [last stable, first failed]. --region judges
+the material in a box only.
 
-The factor belongs to the body as it is drawn, and does not depend on its stiffness: where the load would strain it by more
-than 0.2 %, the trials' Young's moduli are multiplied until it does not, and displacements reported as if they had not been.
-Loads that act at once grow over the whole run, and a stress at the start ([initial]) is left out. The notes say so.
+With --seismic DIRECTION the strength stays as it is. Trials differ in a horizontal acceleration of k times the
+vertical gravity, which pushes the ground to that side. The critical seismic coefficient is the k at which the
+ground fails. Displacements are compared with those of elastic soil under the same acceleration. Pore pressures
+are those of vertical gravity.
 
-With --stage every trial goes on from the state at the end of that stage instead, which is found once, with the whole
-strength and [initial]: one step more, and then the strength falls to 1/F in 10 equal parts of the factor, a nominal step
-each. Displacements are those since, added to the elastic one of what is there and acts then, loaded from zero; so the
-factor is the one by which the strength may fall after that stage, with the stress that the stages have left. A case in
-which water flows has a factor so only: of that time, whose pore pressures stay; with --undrained the water stays instead.
+The factor does not depend on the stiffness: where the load would strain the soil by more than 0.2 %, the trials
+use larger Young's moduli, and the displacements are scaled back. Loads that act at once increase over the whole
+run instead, and initial stresses ([initial]) are left out. The notes of the result say so.
 
-DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and fos_displacement.png (the first
-failed trial), and trials/. Trials that are there and were made from the same case by the same solver are kept.
+With --stage every trial continues from the state at the end of that stage, which is computed once with full
+strength and [initial]. After one step the strength decreases to 1/F in 10 steps. The factor is the one by which
+the strength may decrease after that stage. A case with pore-water flow needs --stage; its pore pressures of
+that time stay constant, or with --undrained its pore water does not flow.
 
-Rigid bodies hold the soil as they do in the case, and their friction is divided, too; those that move on a way, and
-strips, are held where they are at the end of the stage.
+DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and
+fos_displacement.png (the first failed trial), and trials/. Complete trials of the same case and solver are
+reused.
 
-The factors follow from the trials alone, as if each were made after the other. With --jobs above 1 those that may be asked
-for next are begun in advance; they count only if they are asked for, so the result is the same for any N. One that cannot
-be asked for any more gets TERM, which COMMAND must pass on, as mpirun and srun do; trials/ may hold more than the table.
+Rigid bodies support the soil as in the case; their friction is reduced as the strength is. Rigid bodies with a
+prescribed path and footings are fixed at the end of the stage.
 
-Exit codes: 0 found, or stable up to TO (it says so); 2 command line; 65 the case has errors or no factor of safety; 66 no
-such case; 80 no stable state was found, or a trial failed because a rigid body slipped that nothing else holds; that of a
-trial that broke, as 70, 71, 73, 74.
+With --jobs above 1, trials that may be needed next start in advance. They count only if the search asks for
+them, so the result is the same for any N. A trial that is no longer needed gets SIGTERM, which COMMAND must
+pass on, as mpirun and srun do.
+
+Exit codes: 0 found, or stable up to TO (it says so); 2 command line; 65 the case has errors or no factor of
+safety; 66 no such case; 80 no stable state was found, or a rigid body slipped in a trial that only friction
+holds; the solver's code for a trial that failed otherwise, as 70, 71, 73, 74.
 
 Examples:
   bsmpm fos cases/slope_stability.toml
@@ -89,44 +92,43 @@ Examples:
 pub struct FosArguments {
     /// The case file: quasi-static or, with --stage, a consolidation, with a plastic material and a load
     pub case: PathBuf,
-    /// The least factor, or coefficient [default: 0.5; with --seismic 0.02]
+    /// Smallest factor, or seismic coefficient [default: 0.5; with --seismic 0.02]
     #[arg(long, value_name = "FACTOR")]
     pub from: Option<f64>,
-    /// The greatest factor, or coefficient [default: 3; with --seismic 1]
+    /// Largest factor, or seismic coefficient [default: 3; with --seismic 1]
     #[arg(long, value_name = "FACTOR")]
     pub to: Option<f64>,
-    /// Find the critical seismic coefficient of ground that is pushed to this side instead
+    /// Find the critical seismic coefficient instead, for ground that is pushed to this side
     #[arg(long, value_name = "DIRECTION", conflicts_with = "stage")]
     pub seismic: Option<PushedSide>,
-    /// Judge the material alone that lies in a box before it moves: its lower, then its upper coordinates in m, as
-    /// 10,0,30,8
+    /// Judge only the material that starts in a box: its lower, then its upper coordinates in m, such as 10,0,30,8
     #[arg(long, value_name = "BOX", value_delimiter = ',', allow_hyphen_values = true)]
     pub region: Vec<f64>,
-    /// At the end of the stage of this name, in the state that it leaves; "start": of what is before the first stage;
-    /// "end": of the run, as for a case that begins with `[initial]`. Factors are at least 1 then
+    /// Reduce the strength at the end of the stage with this name; "start": before the first stage; "end": at the end
+    /// of the run. Factors are then at least 1
     #[arg(long, value_name = "NAME")]
     pub stage: Option<String>,
-    /// The water that has flowed until then stays where it is while the strength falls, and its pressure follows the
-    /// strain, as in a sudden failure; without it every point keeps its pore pressure, as in a slow one
+    /// Undrained failure: pore pressures follow the strain while the strength decreases. Without it they stay constant,
+    /// as in a slow failure
     #[arg(long, requires = "stage")]
     pub undrained: bool,
-    /// The width of the bands [default: 0.02; with --seismic 0.01]
+    /// Width of the bands [default: 0.02; with --seismic 0.01]
     #[arg(long, value_name = "WIDTH")]
     pub width: Option<f64>,
-    /// Trials at the same time; the result is the same for any N [default: the cores, divided by the launcher's ranks]
+    /// Number of trials at the same time; the result is the same for any N [default: the cores, divided by the ranks]
     #[arg(long, value_name = "N")]
     pub jobs: Option<usize>,
     /// Override one key of the case, as for bsmpm-par; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Where everything is written [default: the case's stem with .fos, in the working directory]
+    /// Output directory [default: name of the case with .fos, in the working directory]
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Repeat trials that are there already
+    /// Repeat trials that are complete already
     #[arg(long)]
     pub force: bool,
-    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside
-    /// this program, or that of PATH, on one rank]
+    /// Command that starts the solver, with a launcher if there is one [default: bsmpm-par next to this program or in
+    /// PATH, on one rank]
     #[arg(last = true, value_name = "COMMAND")]
     pub command: Vec<String>,
 }
@@ -233,10 +235,12 @@ impl FosArguments {
         let least = if sought.is_seismic() { 0.0 } else { LEAST };
         // Written so that what is no number is refused, too.
         if !(least < from && from < to && to <= GREATEST) {
-            return usage(format!("--from {from} --to {to}: allowed is {least} < FROM < TO <= {GREATEST}"));
+            return usage(format!(
+                "E0831: --from {from} and --to {to} are not a valid range. Give {least} < FROM < TO <= {GREATEST}."
+            ));
         }
         if !(NARROWEST <= width && width <= to - from) {
-            return usage(format!("--width {width}: allowed is {NARROWEST} <= WIDTH <= TO - FROM"));
+            return usage(format!("E0831: --width {width} is out of range. Give {NARROWEST} <= WIDTH <= TO - FROM."));
         }
         Ok(SearchPlan { from, to, width, softens: false, sought })
     }
@@ -248,7 +252,7 @@ impl FosArguments {
 
 fn line(trial: &FosTrial, sought: Sought) -> String {
     let kept = if trial.kept { ", kept" } else { "" };
-    let early = trial.end.early().map(|(load, reason)| format!(", ended at {load:.3} of the load: {reason}"));
+    let early = trial.end.early().map(|(load, reason)| format!(", stopped at {load:.3} of the load: {reason}"));
     format!(
         "{} {}: displacement {:.4e} after {} iterations, {:.1} s{kept}{}",
         sought.value(),

@@ -115,7 +115,7 @@ impl SolverProgram<'_> {
         let (program, first) = self
             .command
             .split_first()
-            .ok_or_else(|| Error::Usage { reason: "the command that starts the solver is missing".to_owned() })?;
+            .ok_or_else(|| Error::Launch { program: String::new(), source: ErrorKind::NotFound.into() })?;
         let mut command = Command::new(program);
         if self.side_by_side {
             command.envs(SIDE_BY_SIDE.into_iter().filter(|(name, _)| env::var_os(name).is_none()));

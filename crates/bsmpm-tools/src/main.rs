@@ -13,10 +13,14 @@ fn main() -> ExitCode {
     match run(&Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // The last line of a validation is its counts, for those who read them there.
-            if !matches!(error, Error::NotValid { .. }) {
-                let _ = writeln!(std::io::stderr(), "bsmpm: {}", headed(&error.to_string(), "error"));
-            }
+            let line = match error {
+                // The last line of a validation is its counts, for those who read them there.
+                Error::NotValid { .. } => String::new(),
+                // Errors of a case begin with their places.
+                Error::BadCase { .. } => format!("{error}\n"),
+                _ => format!("bsmpm: {}\n", headed(&error.to_string(), "error")),
+            };
+            let _ = write!(std::io::stderr(), "{line}");
             ExitCode::from(error.exit_code())
         }
     }

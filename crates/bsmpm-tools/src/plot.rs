@@ -30,22 +30,22 @@ pub use section::Section;
 pub struct PlotArguments {
     /// The output directory of a run; the pictures are written there
     pub directory: PathBuf,
-    /// Times (in s, or pseudo-time) of the pictures of the body; the nearest frames are taken [default: those of the
-    /// case, or three]
+    /// Times (s, or pseudo-time) of the pictures; the nearest frames are drawn [default: the times of the case, or
+    /// three]
     #[arg(long, value_delimiter = ',', value_parser = time)]
     pub times: Vec<f64>,
-    /// What colours the body [default: stress-yy, of a solid stress-zz, in quasi-static analyses also plastic-strain
-    /// where there is any]
+    /// Field that is drawn in colours [default: stress-yy, in 3-D stress-zz; in quasi-static analyses also
+    /// plastic-strain if there is any]
     #[arg(long, value_enum)]
     pub field: Option<FieldName>,
-    /// Ends of the colours, in the unit of the picture, so that runs can be compared [default: from the values]
+    /// Range of the colours in the unit of the picture, so that runs can be compared [default: the range of the values]
     #[arg(long, value_name = "MIN,MAX", value_parser = ends, allow_hyphen_values = true)]
     pub range: Option<(f64, f64)>,
-    /// The section of a solid that is drawn, across an axis at a place in m, as y=0.5 [default: across y, in the middle
+    /// Section of a 3-D run, normal to an axis at a coordinate in m, such as y=0.5 [default: normal to y, in the middle
     /// of the grid]
     #[arg(long, value_name = "AXIS=PLACE", value_parser = Section::read)]
     pub section: Option<Section>,
-    /// Points to compare with: a CSV file with columns `time,x,y` (free surface), `time,<history>` or
+    /// Reference points: a CSV file with columns `time,x,y` (free surface), `time,<history>` or
     /// `penetration,<history>`
     #[arg(long, value_name = "FILE")]
     pub reference: Option<PathBuf>,
@@ -61,14 +61,15 @@ impl PlotArguments {
 /// A time, as `0.607 s` or a number.
 pub(crate) fn time(text: &str) -> Result<f64, String> {
     let number = text.trim().trim_end_matches('s').trim_end();
-    let time: f64 = number.parse().map_err(|_| "a time is a number of seconds".to_owned())?;
-    if time.is_finite() { Ok(time) } else { Err("a time is finite".to_owned()) }
+    let time: f64 = number.parse().map_err(|_| "expected a time in seconds".to_owned())?;
+    if time.is_finite() { Ok(time) } else { Err("expected a finite time".to_owned()) }
 }
 
 fn ends(text: &str) -> Result<(f64, f64), String> {
     let number = |part: &str| part.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     let ends = text.split_once(',').and_then(|(lower, upper)| Some((number(lower)?, number(upper)?)));
-    ends.filter(|(lower, upper)| lower < upper).ok_or_else(|| "two numbers MIN,MAX, the smaller one first".to_owned())
+    ends.filter(|(lower, upper)| lower < upper)
+        .ok_or_else(|| "expected two numbers MIN,MAX with MIN below MAX".to_owned())
 }
 
 /// Draws the pictures and, unless the run still goes on, names them in its `run.json`, so that `--force` knows them.
@@ -118,7 +119,11 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
     names.extend(curves::draw(&record, reference.as_ref())?);
     names.extend(convergence::draw(&record)?);
     if names.is_empty() {
-        let reason = format!("the run in {} has left no frame, no history and no step yet", record.directory.display());
+        let reason = format!(
+            "E0846: the run in {} has no frame, history or step yet, so there is nothing to draw. Wait for its \
+             first output.",
+            record.directory.display()
+        );
         return Err(Error::Missing { reason });
     }
     Ok((record, names))

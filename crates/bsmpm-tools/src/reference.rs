@@ -10,7 +10,7 @@ use crate::Error;
 /// A table of reference points; it must have a column `time` or be a function of one of the histories.
 pub(crate) fn columns(path: &Path) -> Result<Columns, Error> {
     let text = fs::read_to_string(path).map_err(Error::unread("reference", path))?;
-    parsed(path, &text, "it needs columns time,x,y or time and a history")
+    parsed(path, &text, "it needs the columns time,x,y, or time and a history")
 }
 
 /// The first two columns of a CSV file with a line of names; what stands in further columns does not matter, nor do
@@ -20,10 +20,10 @@ pub(crate) fn places(path: &Path) -> Result<(String, Vec<(f64, f64)>), Error> {
     let is_comment = |line: &&str| line.trim_start().starts_with('#');
     let pairs = text.lines().map(|line| if is_comment(&line) { String::new() } else { first_two(line) });
     let pairs = pairs.collect::<Vec<_>>().join("\n");
-    let table = parsed(path, &pairs, "it needs two columns x,y with their names above")?;
+    let table = parsed(path, &pairs, "it needs two columns x,y below a line with their names")?;
     let places: Vec<_> = table.values[0].iter().copied().zip(table.values[1].iter().copied()).collect();
     if places.is_empty() {
-        let reason = "it holds a line of names, but no points".to_owned();
+        let reason = "it has a line of names, but no points".to_owned();
         return Err(Error::BadReference { path: path.to_owned(), reason });
     }
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().replace('_', " "));

@@ -89,8 +89,8 @@ fn doubt(case: &Case, ranks: u64) -> Option<String> {
     }
     (ranks > useful).then(|| {
         format!(
-            "W0856: {ranks} ranks are more than about {useful}, from which on the run is not faster. Ranks wait for each other. Use \
-             --ranks {useful}."
+            "W0856: the run is not faster on {ranks} ranks than on about {useful}, because ranks wait for each other. Use --ranks \
+             {useful}."
         )
     })
 }

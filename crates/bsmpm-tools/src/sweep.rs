@@ -37,22 +37,23 @@ use study::Point;
 /// Of the files of its tables.
 const NAME: &str = "sweep";
 
-/// What to vary, and what to look at.
+/// What to vary, and what to compare.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Every combination of the values is a run, or with --one-at-a-time the case as it is and each value by itself. The case as it is,
-or --baseline, is always among them. Settings that the case refuses, runs that fail and runs that would not fit into memory are
-reported in the table and end nothing else. Finished runs are kept while their case, solver and launcher are the same; one that
-was stopped or killed goes on from its checkpoint.
+Every combination of the values is a run; with --one-at-a-time, each value alone. The case itself, or
+--baseline, is always among the runs. Invalid settings, failed runs and runs that need too much memory are
+reported in the table, and the others continue. Complete runs of the same case, solver and launcher are reused.
+Stopped runs continue from their checkpoint.
 
-A quantity is a column of history.csv at a time, linear between steps, or at the end. Several names count together: the root
-of the mean square of their relative differences; a name without a time takes that of the next one. factor-of-safety runs
-`bsmpm fos` in the place of each run. The cost is processor seconds, of all ranks.
+A quantity is a column of history.csv at a time (interpolated between steps), or at the end of the run. Several
+names count together by the root mean square of their relative errors; a name without a time takes that of the
+next one. The quantity factor-of-safety runs `bsmpm fos` in place of each run. The cost is the CPU time of all
+ranks.
 
 DIR gets sweep.csv, sweep.json, a picture of error against cost for each quantity, and runs/.
 
-Exit codes: 0 done, whatever the runs gave; 2 command line; 65 the case as it is has errors; 66 no such case; 80 no run came to
-its end.
+Exit codes: 0 done, whatever the runs gave; 2 command line; 65 the case as it is has errors; 66 no such case; 80
+no run was completed.
 
 Examples:
   bsmpm sweep case.toml --vary grid.cell=20mm,10mm,5mm --vary body.*.points_per_cell=2,3,4 --quantity runout@0.607
@@ -60,26 +61,25 @@ Examples:
 pub struct SweepArguments {
     /// The case file
     pub case: PathBuf,
-    /// A key of the case, as --set takes it, with its values; `*` is every item of a list; repeatable
+    /// Key of the case with its values, as for --set; `*` stands for every item of a list; repeatable
     #[arg(long, value_name = "KEY=V1,V2,...", required = true)]
     pub vary: Vec<String>,
-    /// One value at a time, all else as the case has it, instead of every combination
+    /// Vary one value at a time, instead of all combinations
     #[arg(long)]
     pub one_at_a_time: bool,
-    /// What is looked at; repeatable
+    /// Columns of history.csv to compare; repeatable
     #[arg(long, value_name = "NAME[@TIME],...", required = true)]
     pub quantity: Vec<String>,
-    /// What errors are measured against: finest, baseline, extrapolated (over the cells' sizes), the directory of a
-    /// run, or numbers
+    /// Reference for the errors: finest, baseline, extrapolated (over the cell sizes), the directory of a run, or numbers
     #[arg(long, value_name = "REFERENCE", default_value = "finest")]
     pub reference: String,
-    /// The error that is good enough
+    /// Acceptable relative error
     #[arg(long, value_name = "SHARE", default_value = "2%", value_parser = share)]
     pub within: f64,
-    /// What costs are compared with [default: the case as it is]
+    /// Overrides that define the baseline for the costs [default: the case itself]
     #[arg(long, value_name = "KEY=VALUE,...")]
     pub baseline: Option<String>,
-    /// Write the cheapest setting that is good enough, by all quantities, as a case file
+    /// Write the cheapest setting with acceptable errors as a case file
     #[arg(long, value_name = "FILE")]
     pub write: Option<PathBuf>,
     /// How the runs are made.
@@ -91,7 +91,10 @@ pub struct SweepArguments {
 fn share(text: &str) -> Result<f64, String> {
     let (number, unit) = text.trim().strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
     let share = number.trim().parse().map(|number: f64| unit * number);
-    share.ok().filter(|share| *share > 0.0 && share.is_finite()).ok_or_else(|| "a share, e.g. 2% or 0.02".to_owned())
+    share
+        .ok()
+        .filter(|share| *share > 0.0 && share.is_finite())
+        .ok_or_else(|| "expected a share such as 2% or 0.02".to_owned())
 }
 
 /// Sweeps; `report` gets a line for every run as soon as it is there. Returns the text for the screen, and the files.
@@ -129,7 +132,7 @@ pub fn run(arguments: &SweepArguments, mut report: impl FnMut(&str)) -> Result<(
                 written_back(&plan.bytes, &row.set, file)?;
                 files.push(file.clone());
             }
-            None => text += &format!("{} is not written: no setting is good enough\n", file.display()),
+            None => text += &format!("{} is not written, because no setting is accurate enough\n", file.display()),
         }
     }
     Ok((text, files))
@@ -164,7 +167,9 @@ fn refused(point: &Point, batch: &Batch, ranks: usize) -> Option<Outcome> {
         Err(errors) => Some(Outcome::never(RunState::Invalid, errors.join("\n"))),
         Ok(order) => {
             let (needed, allowed) = (order.load(ranks).memory, batch.limits.memory);
-            let reason = || format!("it needs about {:.0} MiB of {:.0} MiB", mebibytes(needed), mebibytes(allowed));
+            let reason = || {
+                format!("it needs about {:.0} MiB, and {:.0} MiB are available", mebibytes(needed), mebibytes(allowed))
+            };
             (needed > allowed).then(|| Outcome::never(RunState::Memory, reason()))
         }
     }
@@ -199,7 +204,12 @@ fn pictures(report: &SweepReport, output: &Path) -> Result<Vec<PathBuf>, Error> 
 
 /// Writes the case with overrides; it is the case that was run, or it is not written.
 fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> {
-    let usage = |reason: String| Error::Usage { reason: format!("--write {}: {reason}", file.display()) };
+    let usage = |reason: String| Error::Usage {
+        reason: format!(
+            "E0841: the best setting cannot be written to {}: {reason}. Change a copy of the case by hand.",
+            file.display()
+        ),
+    };
     let original = String::from_utf8_lossy(bytes);
     let text = write::text(&original, set).map_err(usage)?;
     let name = file.display().to_string();
@@ -207,7 +217,7 @@ fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> 
     let run = case::parsed(file, bytes, set)?;
     let differences = bsmpm_scene::differences(&run.text, &text).map_err(|errors| Error::bad_case(file, &errors))?;
     if let Some(difference) = differences.first() {
-        return Err(usage(format!("the text would be another case than the run: {difference}")));
+        return Err(usage(format!("the written case would differ from the run: {difference}")));
     }
     Ok(atomic::replace(file, |file| file.write_all(text.as_bytes()))?)
 }

@@ -20,6 +20,8 @@ mod kink;
 mod matrix;
 mod measure;
 mod measured;
+#[cfg(test)]
+mod plausible;
 mod runs;
 mod table;
 
@@ -34,19 +36,19 @@ use table::{RowVerdict, TableRow};
 pub struct ValidateArguments {
     /// The matrix: a TOML file of studies with their runs, rows and figures
     pub matrix: PathBuf,
-    /// Only what is marked as short
+    /// Only runs and rows that are marked as short
     #[arg(long)]
     pub short: bool,
     /// Only studies whose title contains TEXT
     #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
-    /// Where everything is written
+    /// Output directory
     #[arg(short, long, value_name = "DIR", default_value = "target/validation")]
     pub output: PathBuf,
-    /// Repeat runs that are there already
+    /// Repeat runs that are complete already
     #[arg(long)]
     pub force: bool,
-    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow
+    /// Command that starts the solver, with a launcher if there is one
     #[arg(last = true, required = true, value_name = "COMMAND")]
     pub command: Vec<String>,
 }
@@ -123,11 +125,12 @@ fn parts<'a>(matrix: &'a ValidationMatrix, arguments: &ValidateArguments) -> Res
     if parts.iter().flat_map(|part| &part.rows).any(|row| row.is_judged()) {
         return Ok(parts.into_iter().filter(|part| !part.runs.is_empty()).collect());
     }
-    let depth = if arguments.short { "short " } else { "" };
-    let only =
-        arguments.only.as_ref().map_or(String::new(), |only| format!(" in a study whose title contains \"{only}\""));
     let titles: Vec<&str> = matrix.study.iter().map(|study| study.title.as_str()).collect();
-    let reason = format!("no {depth}row is judged{only}; the studies are: {}", titles.join("; "));
+    let reason = format!(
+        "E0807: the chosen part of the matrix has no row with a reference, so nothing can fail. Change --only or \
+         --short; the studies are: {}",
+        titles.join("; ")
+    );
     Err(Error::Usage { reason })
 }
 

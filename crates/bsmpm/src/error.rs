@@ -23,13 +23,13 @@ pub enum GridError {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SolveError {
     /// The library reported a failure.
-    #[error("linear solver: {0}")]
+    #[error("{0}")]
     Failed(String),
     /// The solution holds a number that is not finite.
-    #[error("the linear solution is not finite")]
+    #[error("the solution is not finite")]
     NotFinite,
     /// The recomputed residual is too large.
-    #[error("the linear solution leaves a relative residual of {0:.1e}")]
+    #[error("the relative residual of the solution is {0:.1e}")]
     Residual(f64),
 }
 
@@ -61,7 +61,7 @@ pub struct WorstNode {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepError {
     /// A point is outside the grid, or was not sorted into this rank's window.
-    #[error("point {id} is outside the grid at {x:?}")]
+    #[error("E0740: material point {id} is outside the grid at {x:?}.")]
     Outside {
         /// Global id of the point.
         id: u64,
@@ -69,7 +69,7 @@ pub enum StepError {
         x: Vec<f64>,
     },
     /// A point would leave the grid in this step.
-    #[error("{count} point(s) would leave the grid")]
+    #[error("E0741: {count} material point(s) would leave the grid.")]
     Left {
         /// Number of points over all ranks.
         count: u64,
@@ -77,13 +77,15 @@ pub enum StepError {
         first: Option<(u64, Vec<f64>)>,
     },
     /// All material would have left the grid through its outlets.
-    #[error("all material has left the grid through its outflow faces but {count} point(s), which leave in this step")]
+    #[error(
+        "E0742: all material leaves the grid through its outflow boundaries: the last {count} point(s) go in this step."
+    )]
     Emptied {
         /// Number of points over all ranks.
         count: u64,
     },
     /// A load has no material at some of its points any more.
-    #[error("{points} point(s) of load {load} have lost their material")]
+    #[error("E0743: {points} point(s) of load {load} have lost their material.")]
     Unloaded {
         /// Number of the load, tractions first.
         load: usize,
@@ -91,7 +93,7 @@ pub enum StepError {
         points: usize,
     },
     /// Material was pressed together by more than its pores.
-    #[error("the pores of {count} point(s) close in iteration {iteration}")]
+    #[error("E0744: the pores of {count} material point(s) close in iteration {iteration}.")]
     Closed {
         /// Number of points over all ranks.
         count: u64,
@@ -99,7 +101,7 @@ pub enum StepError {
         iteration: usize,
     },
     /// A drain or inflow is on material through which no water flows.
-    #[error("{points} point(s) of drain or inflow {drain} are on material that lets no water through")]
+    #[error("E0745: {points} point(s) of drain or inflow {drain} are on impermeable material.")]
     Undrained {
         /// Number of the drain; the inflows behind the drains.
         drain: usize,
@@ -107,7 +109,7 @@ pub enum StepError {
         points: usize,
     },
     /// Material turned inside out or became non-finite, also with shortened iterations.
-    #[error("{count} point(s) inverted or not finite in iteration {iteration}")]
+    #[error("E0746: {count} material point(s) turned inside out or lost a finite state in iteration {iteration}.")]
     Inverted {
         /// Number of points over all ranks.
         count: u64,
@@ -118,11 +120,11 @@ pub enum StepError {
     },
     /// The iteration limit was reached, or no direction led on.
     #[error(
-        "not converged after {iterations} iterations{}: {}{}{}",
-        if *iterations < criteria.max_iterations { "" } else { ", their limit" },
+        "E0747: no convergence after {iterations} iterations{}: {}{}{}.",
+        if *iterations < criteria.max_iterations { "" } else { " (their limit)" },
         criteria.judged(*energy, (*force, *material)),
         history.last().and_then(|last| last.water).map_or_else(String::new, |water| criteria.judged_water(water)),
-        unsolved.as_ref().map_or_else(String::new, |reason| format!("; no direction from there: {reason}"))
+        unsolved.as_ref().map_or_else(String::new, |reason| format!("; the linear solver failed: {reason}"))
     )]
     NotConverged {
         /// Iterations made.
@@ -144,7 +146,7 @@ pub enum StepError {
     },
     /// The iteration came near a static equilibrium of elastic material along a direction of negative second-order
     /// work: it is not stable, and round-off decides where an iteration goes from there.
-    #[error("unstable equilibrium: the second-order work of iteration {iteration} is {work:.2e} N m")]
+    #[error("E0748: the equilibrium is unstable: the second-order work of iteration {iteration} is {work:.2e} J.")]
     Unstable {
         /// Iteration.
         iteration: usize,
@@ -152,15 +154,13 @@ pub enum StepError {
         work: f64,
     },
     /// No statuses of the nodes on faces with contact were found that the displacement under them agrees with.
-    #[error(
-        "contact: {passes} corrections of what is on a face, sticks or slips led to no displacement that agrees with it"
-    )]
+    #[error("E0749: the contact states (open, stick, slip) did not settle in {passes} corrections.")]
     Unsettled {
         /// Corrections made.
         passes: usize,
     },
     /// Rounds towards equilibrium at the start came to no end.
-    #[error("{force:.1e} of the largest force are out of balance after {rounds} rounds")]
+    #[error("E0750: no initial equilibrium in {rounds} rounds: {force:.1e} of the largest force is unbalanced.")]
     Unbalanced {
         /// Rounds made.
         rounds: usize,
@@ -170,21 +170,21 @@ pub enum StepError {
         worst: Vec<WorstNode>,
     },
     /// Nothing holds a rigid body that moves freely, and it has no inertia: no equilibrium of it is known.
-    #[error("nothing holds rigid body {body} in a motion that is free")]
+    #[error("E0751: rigid body number {body} has no resistance in a free direction.")]
     Loose {
         /// Number of the body.
         body: usize,
     },
     /// Rigid bodies would overlap: they do not touch each other.
-    #[error("rigid bodies {} and {} overlap", bodies[0], bodies[1])]
+    #[error("E0752: rigid bodies number {} and {} overlap.", bodies[0], bodies[1])]
     Overlapping {
         /// Numbers of the bodies.
         bodies: [usize; 2],
     },
     /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
     #[error(
-        "energy made: what moves, strains and is dissipated exceeds the {given:.3e} J of the start and of all work since by \
-         {:.1} % of the largest energy (bound {:.0} %)", 100.0 * growth, 100.0 * slack
+        "E0753: energy was created: kinetic, elastic and dissipated energy exceed the {given:.3e} J supplied by {:.1} % of the peak \
+         energy (limit: {:.0} %).", 100.0 * growth, 100.0 * slack
     )]
     EnergyMade {
         /// Largest excess over the largest energy.
@@ -195,16 +195,16 @@ pub enum StepError {
         slack: f64,
     },
     /// The step was given up on request, see [`Halo::is_interrupted`](crate::parallel::Halo::is_interrupted).
-    #[error("given up on request")]
+    #[error("E0754: the step was interrupted by a signal.")]
     Interrupted,
     /// Another rank has the error; this rank's part was good.
-    #[error("another rank could not make the step")]
+    #[error("E0755: the step failed on another rank.")]
     OtherRank,
     /// The linear system could not be solved.
-    #[error(transparent)]
+    #[error("E0756: the linear system was not solved: {0}.")]
     Solve(#[from] SolveError),
     /// The constitution refused a trial state when the step was committed.
-    #[error("point {id}: {source}")]
+    #[error("E0757: the stress of material point {id} cannot be computed: {source}.")]
     Material {
         /// Global id of the point.
         id: u64,

@@ -47,8 +47,8 @@ impl Criteria {
     /// Both measures beside their tolerances, in words; the force measure with the number of the material that it is
     /// of.
     pub fn judged(&self, energy: f64, (force, material): (f64, Option<usize>)) -> String {
-        let of = material.map_or_else(String::new, |material| format!(" of material {material} alone"));
-        format!("energy measure {}; force measure{of} {}", against(energy, self.energy), against(force, self.force))
+        let of = material.map_or_else(String::new, |material| format!(" of material {material}"));
+        format!("energy residual {}, force residual{of} {}", against(energy, self.energy), against(force, self.force))
     }
 
     /// What the measure of the water must be below, where it flows: |R| over the largest of what is stored, flows and
@@ -59,7 +59,7 @@ impl Criteria {
 
     /// That measure beside its tolerance, in words that follow those of [`Criteria::judged`].
     pub fn judged_water(&self, water: f64) -> String {
-        format!("; water out of balance {}", against(water, self.water()))
+        format!(", water residual {}", against(water, self.water()))
     }
 }
 
@@ -68,6 +68,5 @@ impl Criteria {
 const WATER: f64 = 1e-4;
 
 fn against(measure: f64, tolerance: f64) -> String {
-    let side = if measure < tolerance { "within" } else { "above" };
-    format!("{measure:.2e}, {side} its tolerance {tolerance:e}")
+    format!("{measure:.1e} (tolerance {tolerance:e})")
 }

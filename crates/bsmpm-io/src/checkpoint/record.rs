@@ -105,10 +105,11 @@ impl CheckpointRecord {
     /// The record that a file's bytes hold, if they are the bytes that were written, of this form, and make sense.
     pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
         let refused = |reason: String| Error::checkpoint(path, reason);
-        let (hash, body) = split(bytes).ok_or_else(|| refused("it is no record of a checkpoint, or damaged".into()))?;
+        let (hash, body) =
+            split(bytes).ok_or_else(|| refused("it is not the record of a checkpoint, or damaged".into()))?;
         let found = blake3::hash(body);
         if found.to_hex().as_bytes() != hash {
-            return Err(refused(format!("it is damaged: its BLAKE3 is {}, not what it says", found.to_hex())));
+            return Err(refused("it is damaged (its checksum is wrong)".into()));
         }
         let wrong = |error: serde_json::Error| refused(error.to_string());
         #[derive(Deserialize)]
@@ -117,7 +118,7 @@ impl CheckpointRecord {
         }
         let RecordForm { schema } = serde_json::from_slice(body).map_err(wrong)?;
         if schema != SCHEMA {
-            return Err(refused(format!("it was written in form {schema}, this program reads form {SCHEMA}")));
+            return Err(refused(format!("it has format {schema}, and this program reads format {SCHEMA}")));
         }
         let record: Self = serde_json::from_slice(body).map_err(wrong)?;
         record.sense().map_err(refused)?;

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 /// One measure, and where it lies in runs that were found to be good.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Indicator {
+    /// The code by which `bsmpm explain` explains it; empty in runs of older programs.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub code: String,
     /// What was found.
     pub value: f64,
     /// Its unit; `-` for none.
@@ -35,6 +38,7 @@ impl Indicator {
     pub fn new(value: f64, unit: &str, meaning: &str, usual: [f64; 2]) -> Self {
         let unusual = !(usual[0]..=usual[1]).contains(&value);
         Self {
+            code: String::new(),
             value,
             unit: unit.to_owned(),
             meaning: meaning.to_owned(),
@@ -57,6 +61,12 @@ impl Indicator {
     /// Whether it ends the run with a code of its own.
     pub fn ends_run(&self) -> bool {
         self.failed && !self.accepted
+    }
+
+    /// The same with its code.
+    #[must_use]
+    pub fn coded(self, code: &str) -> Self {
+        Self { code: code.to_owned(), ..self }
     }
 
     /// The same with what to do where it is unusual.

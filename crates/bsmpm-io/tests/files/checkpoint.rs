@@ -148,7 +148,7 @@ fn forge(path: &Path, change: impl Fn(&mut serde_json::Value)) {
 fn records_that_make_no_sense_are_refused_before_anything_is_read() {
     type Change = (&'static str, fn(&mut serde_json::Value));
     let changes: [Change; 9] = [
-        ("form 5", |record| record["schema"] = 5.into()),
+        ("format 5", |record| record["schema"] = 5.into()),
         ("cannot be in a file", |record| record["arrays"][0]["rows"] = (1_u64 << 40).into()),
         ("cannot be in a file", |record| record["arrays"][0]["rows"] = u64::MAX.into()),
         ("cannot be in a file", |record| record["arrays"][0]["width"] = (1_u64 << 62).into()),

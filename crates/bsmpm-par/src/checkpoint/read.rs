@@ -169,7 +169,7 @@ fn visible(world: &SimpleCommunicator, found: &FoundCheckpoint) -> Result<(), Re
 }
 
 fn refused(path: &Path, reason: &str) -> Refusal {
-    Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {reason}", path.display()))
+    Refusal::unusable(path, reason)
 }
 
 /// The file's arrays, if they are those of the record.

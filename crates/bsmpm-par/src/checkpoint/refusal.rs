@@ -1,8 +1,10 @@
 //! An error that all ranks know.
 
+use bsmpm_io::exit::CHECKPOINT;
 use mpi::collective::{CommunicatorCollectives, Root};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::fmt::{Display, Formatter};
+use std::path::Path;
 
 /// Why something was not done, the same on every rank.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,6 +28,16 @@ impl From<bsmpm_io::Error> for Refusal {
 }
 
 impl Refusal {
+    /// That of a checkpoint that is not one of this case, or damaged.
+    pub(crate) fn unusable(path: &Path, reason: &str) -> Self {
+        let path = path.display();
+        let reason = format!(
+            "E0720: checkpoint `{path}` cannot be used: {reason}. The run was not continued. Name another one with `--restart FILE`, or \
+             start again with `--force`."
+        );
+        Self::new(CHECKPOINT, reason)
+    }
+
     pub(crate) fn new(code: u8, reason: impl Into<String>) -> Self {
         Self { code, reason: reason.into() }
     }

@@ -5,7 +5,6 @@ use super::refusal::{Refusal, agree};
 use super::write::infinite;
 use bsmpm::grid::Grid;
 use bsmpm::points::{Column, Number, Points};
-use bsmpm_io::exit;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::topology::SimpleCommunicator;
 use std::ops::Range;
@@ -26,8 +25,7 @@ pub fn require<const D: usize>(
     grid: &Grid<D>,
     (materials, present, left): (usize, Option<&[Range<u64>]>, u64),
 ) -> Result<(), Refusal> {
-    let refused =
-        |reason| Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {reason}", file.display()));
+    let refused = |reason: String| Refusal::unusable(file, &reason);
     agree(world, finite(points).and_then(|()| possible(points, grid, materials)).map_err(refused))?;
     let all = 0..u64::MAX;
     let present = present.unwrap_or(std::slice::from_ref(&all));

@@ -224,8 +224,13 @@ impl CheckpointState {
             Ok(_) => Err("it reads back otherwise".into()),
             Err(error) => Err(error.to_string()),
         });
-        let lost =
-            |reason: String| format!("no checkpoint of step {}: its state cannot be written: {reason}", self.steps);
+        let lost = |reason: String| {
+            format!(
+                "E0725: the checkpoint of step {} cannot be written: {reason}. The run ends. Continue from the last checkpoint with smaller \
+             steps.",
+                self.steps
+            )
+        };
         whole.map_err(|reason| Refusal::new(exit::LEFT, lost(reason)))
     }
 
@@ -234,9 +239,7 @@ impl CheckpointState {
     /// # Errors
     /// It is no such text (76).
     pub fn parse(path: &Path, text: &[u8]) -> Result<Self, Refusal> {
-        serde_json::from_slice(text).map_err(|error| {
-            Refusal::new(exit::CHECKPOINT, format!("the checkpoint {} cannot be used: {error}", path.display()))
-        })
+        serde_json::from_slice(text).map_err(|error| Refusal::unusable(path, &error.to_string()))
     }
 
     /// The repeated breakpoints of the run's grid; `None` if they are not of a grid like this one.

@@ -106,7 +106,10 @@ fn visible(world: &SimpleCommunicator, path: &Path) -> Result<(), Refusal> {
     let opened = std::fs::File::options().write(true).open(path);
     let failure = |error: std::io::Error| {
         let (rank, path) = (world.rank(), path.display());
-        format!("rank {rank} cannot write {path}: {error}; the output directory must be one that all ranks share")
+        format!(
+            "E0717: rank {rank} cannot write `{path}`: {error}. The checkpoint is not complete. Use an output directory that all ranks \
+             share."
+        )
     };
     agree(world, opened.map(|_| ()).map_err(|error| Refusal::new(exit::WRITE, failure(error))))
 }
@@ -115,15 +118,22 @@ fn visible(world: &SimpleCommunicator, path: &Path) -> Result<(), Refusal> {
 fn finite(step: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
     for (name, column) in contents.columns.iter().filter(|(_, column)| column.number() == Number::F64) {
         if let Some((point, value)) = infinite(&**column) {
-            let reason = format!("no checkpoint of step {step}: {name} of this rank's point {point} is {value}");
+            let reason = format!(
+                "E0725: the checkpoint of step {step} cannot be written: `{name}` of material point {point} is {value}. The run ends. \
+                 Continue from the last checkpoint with smaller steps."
+            );
             return Err(Refusal::new(exit::LEFT, reason));
         }
     }
     match contents.guess.0.iter().find(|value| !value.is_finite()) {
         None => Ok(()),
-        Some(value) => {
-            Err(Refusal::new(exit::LEFT, format!("no checkpoint of step {step}: a nodal displacement is {value}")))
-        }
+        Some(value) => Err(Refusal::new(
+            exit::LEFT,
+            format!(
+                "E0725: the checkpoint of step {step} cannot be written: a nodal displacement is {value}. The run ends. Continue from the \
+                 last checkpoint with smaller steps."
+            ),
+        )),
     }
 }
 
@@ -182,7 +192,10 @@ impl Fill<'_> {
     }
 
     fn reason(&self, error: &hdf5_collective::Error) -> String {
-        format!("cannot write {}: {error}", self.path.display())
+        let path = self.path.display();
+        format!(
+            "E0718: checkpoint `{path}` cannot be written: {error}. The run ends. Check the disk, and continue with `--restart auto`."
+        )
     }
 
     /// Removes the file and ends the job.

@@ -29,8 +29,7 @@ pub(super) fn of(case: &Case, history: &Columns) -> Option<Indicator> {
     let forces = case.histories.iter().filter(|history| is_force(&history.quantity));
     let noises = forces.filter_map(|force| Some((noise(force, times, history)?, force.name.as_str())));
     let (value, name) = noises.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let meaning = format!("standard deviation of the jumps of {name} from step to step, over its largest magnitude");
-    Some(Indicator::new(value, "-", &meaning, [0.0, USUAL]))
+    Some(Indicator::new(value, "-", &format!("`{name}`"), [0.0, USUAL]))
 }
 
 fn is_force(quantity: &Quantity) -> bool {

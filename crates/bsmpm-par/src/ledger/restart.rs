@@ -116,7 +116,10 @@ impl Headings {
                 return CsvTable::resume(&path, headings, mark);
             }
             let first = state.steps + 1;
-            news.push(format!("{name} of the steps before is not there: it begins with step {first}"));
+            news.push(format!(
+                "W0738: the earlier steps of `{name}` are missing. It begins with step {first}. Restore the file from a copy if they are \
+                 needed."
+            ));
             CsvTable::create(&path, headings)
         };
         let files = &state.files;

@@ -3,6 +3,7 @@
 use super::refuse;
 use crate::checkpoint::{Refusal, agree};
 use crate::cli::Arguments;
+use crate::launch;
 use crate::ledger::Ledger;
 use crate::log::Log;
 use crate::machine;
@@ -67,7 +68,11 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     }
     let Task { case, arguments, .. } = &task;
     if let RunStart::Complete(code) = start {
-        return Ok(refuse(universe, code, &format!("{} is complete already", arguments.directory().display())));
+        return Ok(remark(
+            universe,
+            code,
+            &format!("The run in `{}` is already complete.", arguments.directory().display()),
+        ));
     }
     let timers = Rc::new(Timers::default());
     let seam = (universe, petsc, choice);
@@ -81,8 +86,16 @@ fn run_in<K: Kinematics<D>, const D: usize>(
         resumed.close().map_err(refused)?;
     }
     let speaks = universe.world().rank() == 0;
-    let log = Log::new(speaks, arguments.quiet, arguments.verbose, arguments.log_format, case.analysis.end);
+    let log = Log::new(speaks, arguments, case);
     Ok(Run::new((universe, hdf5), task, scene, (ledger, log), timers, before).until_the_end())
+}
+
+/// Prints a remark on rank 0 and hands the exit code on.
+fn remark(universe: &Universe, code: u8, text: &str) -> u8 {
+    if universe.world().rank() == 0 {
+        launch::say(&format!("bsmpm-par: {text}"));
+    }
+    code
 }
 
 /// What is wrong where this process has fewer cores than threads, as where `mpirun` binds a rank to one core, or this
@@ -92,13 +105,14 @@ fn crowded(world: &SimpleCommunicator, threads: u32) -> Option<String> {
     let cores = std::thread::available_parallelism().ok()?.get();
     if threads as usize > cores {
         return Some(format!(
-            "--threads {threads}: this rank may use {cores} core(s), where threads take turns; mpirun --bind-to none, or \
-             --map-by slot:PE={threads}, gives it more"
+            "W0720: this rank has {threads} threads, but only {cores} core(s). The run is slow. Add `--bind-to none` or `--map-by \
+             slot:PE={threads}` to mpirun."
         ));
     }
     let all = machine::processors().filter(|&all| threads > 1 && here > all)?;
     Some(format!(
-        "--threads {threads}: the ranks on this host have {here} threads for {all} processors, where they take turns"
+        "W0721: the ranks of this host have {here} threads for {all} processors. The run is slow. Reduce `--threads` or the number \
+         of ranks."
     ))
 }
 
@@ -130,7 +144,13 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
         let mut simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
         simulation.resume(resumed.state.steps, stepper, surface);
         let recorder = Recorder::resume(case, &resumed.state.record);
-        let foreign = || Refusal::new(exit::CHECKPOINT, "the checkpoint is of a run with other histories");
+        let foreign = || {
+            Refusal::new(
+                exit::CHECKPOINT,
+                "E0719: the checkpoint has other histories than the case. It cannot be continued. Restore the histories of the case, or start \
+             again with `--force`.",
+            )
+        };
         return Ok((simulation, recorder.ok_or_else(foreign)?));
     }
     model.grid = model.grid.within(std::array::from_fn(|axis| room[axis].clone()));

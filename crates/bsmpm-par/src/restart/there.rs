@@ -10,6 +10,7 @@ use bsmpm_io::checkpoint::FoundCheckpoint;
 use bsmpm_io::directory::Existing;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Manifest, ManifestRestart, Status};
+use bsmpm_messages::without_code;
 use bsmpm_scene::words::{RemovedWord, Word};
 use bsmpm_scene::{Case, Difference, Error, MASS};
 
@@ -70,14 +71,17 @@ pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32)
     }
     let Some(run) = run else { return Ok(Beginning::default()) };
     if let Some(gone) = &run.checkpoint {
-        return refused(format!("the checkpoint {gone}, which run.json names, is gone; --force starts the run again"));
+        return refused(format!(
+            "E0724: checkpoint `{gone}`, which run.json names, is missing. The run cannot be continued. Start it again with `--force`."
+        ));
     }
     // One that was stopped has a checkpoint, unless that was before it had found its first state.
     let kept_nothing = [Some(exit::WRITE), Some(exit::STOPPED)].contains(&run.exit_code);
     if run.status != Status::Running && !kept_nothing {
         let ended = format!("{:?}", run.status).to_lowercase();
         return refused(format!(
-            "the run in the output directory has {ended} and left no checkpoint to go on from; --force starts it again"
+            "E0726: the run in the output directory has {ended} without a checkpoint. It cannot be continued. Start it again with \
+             `--force`."
         ));
     }
     futile(&run.restarts, 0)?;
@@ -93,32 +97,54 @@ pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32)
     Ok(Beginning {
         existing: Existing::Delete,
         restarts: run.restarts.iter().cloned().chain([restart]).collect(),
-        warnings: vec!["the run that is there ended before its first checkpoint: it starts again from the case".into()],
+        warnings: vec![
+            "W0730: the earlier run ended before its first checkpoint. This run starts from the case. Write checkpoints more often with \
+             `output.checkpoint`."
+                .into(),
+        ],
     })
 }
 
-/// The keys that differ between a case and what was run, if a run may go on with all of them changed.
+/// The keys that differ between a case and what was run, if a run may continue with all of them changed.
 pub(super) fn admissible(what: &str, past: &Manifest, case: &Case) -> Result<Vec<Difference>, Refusal> {
-    let refused = |reason: String| Refusal::new(exit::CHECKPOINT, format!("{what} {reason}"));
+    let refused = |reason: String| Refusal::new(exit::CHECKPOINT, reason);
     let differences = bsmpm_scene::differences(&past.case.text, &case.text);
-    let differences = differences.map_err(|errors| refused(unreadable(&errors)))?;
+    let differences = differences.map_err(|errors| refused(unreadable(what, &errors)))?;
     let bound: Vec<String> =
         differences.iter().filter(|difference| !difference.may_change).map(ToString::to_string).collect();
-    if bound.is_empty() { Ok(differences) } else { Err(refused(format!("is of another case: {}", bound.join("; ")))) }
+    if bound.is_empty() {
+        return Ok(differences);
+    }
+    Err(refused(format!(
+        "E0721: {what} belongs to another case: {}. It cannot be continued. Restore these keys, or start again with `--force`.",
+        bound.join("; ")
+    )))
 }
 
 /// Why the case of an earlier run is not read any more.
-fn unreadable(errors: &[Error]) -> String {
+fn unreadable(what: &str, errors: &[Error]) -> String {
     let removed = errors.iter().find_map(|error| error.removed.map(|removed| (&error.key, removed)));
-    removed.map_or_else(
-        || "is of a case that this version does not know".into(),
-        |(key, RemovedWord { word, last, .. })| {
-            format!(
-                "is of a case with {key} = \"{word}\", which was removed after {last}. Go on with that version, or start the \
-                 run again with --force."
-            )
-        },
-    )
+    match removed {
+        None => format!(
+            "E0727: {what} has a case that this version cannot read. It cannot be continued. Use the version that began it, or start \
+             again with `--force`."
+        ),
+        Some((key, RemovedWord { word, last, .. })) => format!(
+            "E0728: {what} uses `{key} = \"{word}\"`, which was removed after {last}. It cannot be continued. Use that version, or \
+             start again with `--force`."
+        ),
+    }
+}
+
+/// That a checkpoint is damaged, and an older one is used.
+pub(super) fn passed_over(bad: &str) -> String {
+    let reason = without_code(bad).split(". ").next().unwrap_or_default();
+    format!("W0731: {reason}. The run continues from an older checkpoint. Check the disk and the file system.")
+}
+
+/// That a key was changed since a checkpoint.
+pub(super) fn changed_since(change: &str) -> String {
+    format!("W0732: since the checkpoint, {change}. The run continues with the new value. Check that this is intended.")
 }
 
 /// Whether the last restarts were all from this step.
@@ -128,8 +154,8 @@ pub(super) fn futile(restarts: &[ManifestRestart], step: u64) -> Result<(), Refu
         return Ok(());
     }
     let reason = format!(
-        "{same} restarts in a row came to no checkpoint beyond step {step}; --restart with a checkpoint's file, or --force, \
-         tries again"
+        "E0729: {same} restarts in a row made no progress beyond step {step}. The run was not continued. Name a checkpoint with \
+         `--restart FILE`, or start again with `--force`."
     );
     Err(Refusal::new(exit::STALLED, reason))
 }
@@ -141,8 +167,8 @@ pub(super) fn new_defaults(past: &Manifest, case: &Case) -> Option<String> {
     let solver = &case.solver;
     let goes_on_with = solver.extended_splines == ExtendedSplines::Linear || solver.quadrature == Quadrature::Fitted;
     (began_without && goes_on_with).then(|| {
-        "the run began in a version without extended splines and with other default quadrature. Displacements at the surface \
-         and stresses at C0 lines may jump at this restart. For consistent results, start a new run with --force."
+        "W0733: the run began in a version with other default methods. Displacements at the surface may jump at this restart. For \
+         consistent results, start again with `--force`."
             .into()
     })
 }
@@ -163,16 +189,24 @@ pub(super) fn other_machine(past: &Manifest, ranks: u32, found: &FoundCheckpoint
     if found.record.ranks != ranks {
         let before = found.record.ranks;
         reasons.push(format!(
-            "restart on {ranks} rank(s) of a checkpoint of {before}: it agrees within tolerances, not to the bit"
+            "W0734: the checkpoint was written on {before} rank(s), and the run continues on {ranks}. Results agree within tolerances \
+             only. Use {before} rank(s) for identical results."
         ));
     }
     let version = env!("CARGO_PKG_VERSION");
     if past.version != version {
-        reasons.push(format!("restart by version {version} of a checkpoint by {}", past.version));
+        reasons.push(format!(
+            "W0735: the checkpoint was written by version {}, and the run continues with version {version}. Results may differ. Use the \
+             same version for identical results.",
+            past.version
+        ));
     }
     for (library, now) in ledger::versions() {
         if let Some(before) = past.versions.get(&library).filter(|before| **before != now) {
-            reasons.push(format!("restart with {library} {now} of a checkpoint with {before}"));
+            reasons.push(format!(
+                "W0736: the checkpoint was written with {library} {before}, and the run continues with {now}. Results may differ slightly. \
+                 Use the same libraries for identical results."
+            ));
         }
     }
     reasons

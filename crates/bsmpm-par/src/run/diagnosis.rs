@@ -1,4 +1,4 @@
-//! What is told of a step that failed: where it was worst on all ranks, and what may help.
+//! What is reported of a step that failed: where it was worst on all ranks, and what may help.
 
 use bsmpm::control::Failure;
 use bsmpm::error::{SolveError, StepError};
@@ -8,11 +8,12 @@ use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::failure::{FailureMeasures, FailureReport};
 use bsmpm_io::manifest::Worst;
-use bsmpm_scene::{Body, Case, GridSpec, Initial};
+use bsmpm_messages::code_of;
+use bsmpm_scene::{Body, Case, GridSpec, Initial, Rigid};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::CommunicatorCollectives;
 
-/// Places told of one failure.
+/// Places reported of one failure.
 const MOST_PLACES: usize = 10;
 
 /// The report of `failure` in step `step` of a case, from all ranks. Collective.
@@ -37,7 +38,7 @@ pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case:
         tolerances,
         worst: last.map_or_else(Vec::new, |error| worst(world, places_of(error, iterated), &case.grid)),
         loose: last.and_then(|error| loose(error, case)),
-        advice: last.map_or_else(Vec::new, |error| advice(error, case)),
+        advice: last.map_or_else(Vec::new, |error| [implausible(case), advice(error, case)].concat()),
     }
 }
 
@@ -47,7 +48,7 @@ fn loose(error: &StepError, case: &Case) -> Option<String> {
     case.rigid.get(*body).map(|rigid| rigid.name.clone())
 }
 
-/// The error whose places are told: the last one, or where that names none the last that iterated.
+/// The error whose places are reported: the last one, or where that names none the last that iterated.
 fn places_of<'a>(last: &'a StepError, iterated: Option<&'a StepError>) -> &'a StepError {
     if matches!(last, StepError::Solve(_)) { iterated.unwrap_or(last) } else { last }
 }
@@ -84,107 +85,80 @@ fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<
     world.all_gather_into(&own[..], &mut all[..]);
     let mut places: Vec<&[f64]> = all.chunks_exact(6).filter(|place| place.iter().all(|n| n.is_finite())).collect();
     places.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let told = |place: &&[f64]| Worst {
+    let named = |place: &&[f64]| Worst {
         kind: kind.into(),
         id: place[1] as u64,
         position: place[3..3 + dims].to_vec(),
         force: (kind == "node").then_some(place[2]),
     };
-    places.iter().take(MOST_PLACES).map(told).collect()
+    places.iter().take(MOST_PLACES).map(named).collect()
 }
 
 fn advice(error: &StepError, case: &Case) -> Vec<String> {
     let lines: &[&str] = match error {
-        StepError::NotConverged { iterations, energy, force, material, criteria, .. } => {
+        StepError::NotConverged { iterations, force, material, criteria, .. } => {
             let name = material.map(|number| case.materials[number].name.as_str());
-            return not_converged(*iterations, (*energy, *force), name, criteria, case);
+            return not_converged(*iterations, *force, name, criteria, case);
         }
         StepError::Closed { .. } => &[
-            "a larger porosity of the soil, or a stiffer one: its grains keep their volume, and the skeleton is pressed into them",
-            "a permeability that follows the porosity (permeability_law = \"kozeny-carman\"), and shorter steps",
+            "The skeleton is compressed into its grains. Increase `porosity` or the stiffness of the soil.",
+            "Set `permeability_law = \"kozeny-carman\"`, and use shorter steps.",
         ],
         StepError::Unstable { .. } => &[
-            "nearly incompressible material under a pressure of several times its shear modulus: more points_per_cell",
-            "where the body itself buckles, a dynamic analysis follows it",
+            "The pressure is several times the shear modulus of nearly incompressible material. Increase `body.points_per_cell`.",
+            "If the body itself buckles, use a dynamic analysis.",
         ],
         StepError::EnergyMade { .. } => &[
             match case.stabilisation {
-                Stabilisation::None => "a smaller [analysis] dt",
-                Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
-                    "stabilisation.method = \"none\": where material flows without strength or dilates, every F-bar \
-                     method makes some energy"
-                }
+                Stabilisation::None => "Reduce `analysis.dt`.",
+                Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => "Set `stabilisation.method = \"none\"`.",
                 Stabilisation::FBar | Stabilisation::FBarZhao | Stabilisation::ModifiedFBar => {
-                    "another [stabilisation]: f-bar, modified-f-bar and f-bar-zhao make energy where material flows \
-                     without strength or dilates, consistent-f-bar less, none none"
+                    "Set `stabilisation.method = \"consistent-f-bar\"`."
                 }
             },
-            "where bodies meet a face in contact: shorter steps, or [analysis] newmark_gamma = 1",
-            "a smaller dilation, or some friction; see where it begins: [[history]] quantity = \"energy\", and the frames",
-            "the state that is saved is wrong, too: do not go on from it",
+            "If bodies separate from a boundary, use shorter steps, or `analysis.newmark_gamma = 1`.",
+            "Reduce the dilation angle, or add friction. The frames and [[history]] quantity = \"energy\" show where it begins.",
+            "The saved state is wrong, too: do not continue from it.",
         ],
         StepError::Unsettled { .. } => &[
-            "more steps ([analysis] steps or dt), so that less changes at the face in each",
-            "a smaller friction of the face in [boundary]: from about 1 on there may be no state, or several, that agree with it",
+            "Increase `analysis.steps`, or reduce `analysis.dt`, so that the contact changes less in a step.",
+            "Reduce the friction coefficient in [boundary]: from about 1 on there may be no solution, or several.",
         ],
         StepError::Unbalanced { .. } => &[
-            "points_per_cell = 3 or more, or a face of half a cell, where the body ends in a point at the place named: two \
-             points there cannot hold what a cell with next to no material carries",
-            "where much of the body yields it may not stand at all: gravity with a ramp and no [initial] lets it yield as it \
-             is loaded",
-            "a larger [solver] force_tolerance",
+            "Set `body.points_per_cell = 3`, or blunt the body where it ends in a tip.",
+            "The body may not stand at all. Use `gravity.ramp` without [initial], so that it yields as it is loaded.",
+            "Increase `solver.force_tolerance`.",
         ],
-        StepError::Loose { body } => {
-            let rigid = &case.rigid[*body];
-            let cause = match rigid.friction > 0.0 {
-                true => format!(
-                    "its friction (friction_coefficient = {}) is fully mobilised, or it does not touch the soil",
-                    rigid.friction
-                ),
-                false => "it has no friction, or does not touch the soil".to_owned(),
-            };
-            return vec![format!(
-                "rigid `{}` slides or falls: {cause}. Reduce its force, increase friction_coefficient, leave that motion out of \
-                 `free`, or make the analysis dynamic",
-                rigid.name
-            )];
-        }
+        StepError::Loose { body } => return vec![against_motion(&case.rigid[*body])],
         StepError::Overlapping { bodies } => {
             let [one, other] = bodies.map(|number| case.rigid[number].name.as_str());
             return vec![format!(
-                "keep rigid `{one}` and rigid `{other}` apart, as rigid bodies do not touch each other: change their paths, \
-                 end the analysis before they meet, or make them one polygon"
+                "Keep `{one}` and `{other}` apart by other paths, or make them one body: rigid bodies do not contact each other."
             )];
         }
         StepError::Inverted { .. } => &[
-            "material turned inside out: more steps ([analysis] steps or dt), or a larger [solver] background",
-            "look at the points named: loose points at a free surface are the usual ones",
+            "Increase `analysis.steps` (or reduce `analysis.dt`), or increase `solver.background`.",
+            "Look at the material points named: loose points at a free surface are the usual ones.",
         ],
         StepError::Left { .. } | StepError::Outside { .. } => &[
-            "a larger grid, or a support at the face where points left; steps down to 1/1024 threw them out as well",
-            "where material shall leave: [boundary] \"outflow\" there; what a strip or load is at stays",
+            "Use a larger grid, or a support at that boundary.",
+            "If material is to leave, set \"outflow\" in [boundary]. Footings, segments and loads stay.",
         ],
         StepError::Emptied { .. } => &[
-            "an [analysis] end before this time: nothing is left to compute, and the saved state is the last one with material",
-            "a larger grid, if it was to be followed farther",
+            "Reduce `analysis.end` to before this time, as there is nothing left to compute.",
+            "Use a larger grid, if the material is to be followed farther.",
         ],
-        StepError::Unloaded { .. } => {
-            &["a load or strip has no material any more: look where it was in the last frame"]
-        }
-        StepError::Undrained { .. } => &[
-            "drains and inflows belong where the soil at the surface has a permeability: in a part of it that has none \
-             nothing flows",
-        ],
+        StepError::Unloaded { .. } => &["Look at the last frame, and place the load where the material is."],
+        StepError::Undrained { .. } => &["Give that material a `permeability`, or move the drain or inflow."],
         StepError::Solve(SolveError::Failed(_)) if starts_at_rest(case) && case.solver.background == 0.0 => &[
-            "[solver] background = 1e-4: in the state at rest no inertia holds nearly empty cells, and an iteration does not \
-             come to an end with them",
-            "[solver] linear = \"direct\"",
+            "Set `solver.background = 1e-4`: without inertia nothing supports nearly empty cells.",
+            "Set `solver.linear = \"direct\"`.",
         ],
         StepError::Solve(SolveError::Failed(_) | SolveError::NotFinite | SolveError::Residual(_)) => &[
-            "is every body held? In a quasi-static analysis nothing else stops a rigid motion",
-            "another factorisation: [solver] linear = { factor = \"mumps\" }, and a larger [solver] background",
+            "Check that every body is supported, or increase `solver.background`.",
+            "Set `solver.linear = { factor = \"mumps\" }`.",
         ],
-        StepError::Material { .. } | StepError::OtherRank => &["more steps ([analysis] steps or dt)"],
+        StepError::Material { .. } | StepError::OtherRank => &["Increase `analysis.steps`, or reduce `analysis.dt`."],
         StepError::Interrupted => &[],
     };
     lines.iter().map(|line| (*line).to_owned()).collect()
@@ -193,6 +167,26 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
 /// Whether equilibrium is sought before the first step.
 fn starts_at_rest(case: &Case) -> bool {
     case.settles || case.initial == Some(Initial::Elastic)
+}
+
+/// What the case was warned of as probably not meant: it may well be why a step fails.
+fn implausible(case: &Case) -> Vec<String> {
+    let is_slip = |warning: &&String| code_of(warning).is_some_and(|code| code.starts_with("W01"));
+    case.warnings.iter().filter(is_slip).map(|warning| format!("heed the warning at the start, {warning}")).collect()
+}
+
+/// What helps where soil without cohesion has a free surface that its weight alone brings to failure.
+fn against_local_failure(case: &Case) -> Option<String> {
+    let is_without = |body: &&Body| cohesion(&case.materials[body.material].material) == Some(0.0);
+    let body = case.bodies.iter().find(is_without)?;
+    let is_at_rest = case.analysis.regime == Regime::QuasiStatic && !case.has_prescribed_motion();
+    (is_at_rest && case.gravity.is_some()).then(|| {
+        format!(
+            "material.{} has no cohesion: a free surface as steep as its friction angle, and the toe of a slope, fail under \
+             their own weight. Give it a small cohesion, such as \"0.1 kPa\", or make the slope flatter",
+            case.materials[body.material].name
+        )
+    })
 }
 
 /// What helps where something is pushed into soil without cohesion. A footing on sand with a friction angle of 40 and a
@@ -204,14 +198,30 @@ fn against_no_cohesion(case: &Case) -> Option<String> {
     if case.analysis.regime != Regime::QuasiStatic || !case.has_prescribed_motion() {
         return None;
     }
-    let cause = format!(
-        "material.{} has no cohesion, so that at the edge of what moves, next to the free surface, it has no strength",
-        case.materials[body.material].name
-    );
+    let name = &case.materials[body.material].name;
     match case.limit_load {
-        None => Some(format!("analysis.purpose = \"limit-load\", where the limit load is sought: {cause}")),
-        Some(_) if case.solver.background == 0.0 => Some(format!("leave solver.background to the purpose: {cause}")),
+        None => Some(format!(
+            "`material.{name}` has no cohesion, and so no strength at the free surface. Set `analysis.purpose = \"limit-load\"`."
+        )),
+        Some(_) if case.solver.background == 0.0 => Some(format!(
+            "`material.{name}` has no cohesion, and so no strength at the free surface. Remove `solver.background`."
+        )),
         Some(_) => None,
+    }
+}
+
+/// What keeps a rigid body in place that is free to move.
+fn against_motion(rigid: &Rigid) -> String {
+    let name = &rigid.name;
+    match rigid.friction > 0.0 {
+        true => format!(
+            "`{name}` slides or falls: its friction is exhausted, or it does not touch the soil. Increase its \
+             `friction_coefficient`, or reduce its force."
+        ),
+        false => format!(
+            "`{name}` slides or falls: it has no friction, or does not touch the soil. Set its `friction_coefficient`, or remove the \
+             direction from `free`."
+        ),
     }
 }
 
@@ -226,44 +236,36 @@ fn cohesion(material: &Material) -> Option<f64> {
 /// of.
 fn not_converged(
     iterations: usize,
-    (energy, force): (f64, f64),
+    force: f64,
     material: Option<&str>,
     criteria: &Criteria,
     case: &Case,
 ) -> Vec<String> {
-    let mut lines: Vec<String> = against_no_cohesion(case).into_iter().collect();
+    let mut lines: Vec<String> = against_no_cohesion(case).into_iter().chain(against_local_failure(case)).collect();
     if case.rigid.iter().any(|body| body.friction > 0.0) {
         // What stops is what the state became in steps too coarse, not how far the step goes (`boundary/rigid.md`).
-        lines.push(
-            "several times as many steps from the start: a rough rigid body in soil that yields may stop where with shorter \
-             steps it goes on"
-                .into(),
-        );
+        lines.push("Use several times as many steps from the start, as a rough rigid body needs short steps.".into());
     }
     if iterations >= criteria.max_iterations {
         lines.push(format!(
-            "a larger [solver] max_iterations than {}, if the measures still fell",
+            "Increase `solver.max_iterations` (now {}), if the residuals still fell.",
             criteria.max_iterations
         ));
     }
     if force < criteria.force {
         lines.push(format!(
-            "more steps, or a [solver] tolerance above the {:e} of now: forces balance within force_tolerance = {:e}, but each \
-             direction still works (energy measure {energy:.1e}), as where the body yields as a whole",
-            criteria.energy, criteria.force
+            "The forces balance, but much of the soil yields. Increase `analysis.steps`, or `solver.tolerance` (now {:e}).",
+            criteria.energy
         ));
     }
     if let (true, Some(name)) = (force >= criteria.force, material) {
-        lines.push(format!(
-            "look at the body of \"{name}\": its forces alone do not balance within [solver] force_tolerance = {:e}",
-            criteria.force
-        ));
+        lines.push(format!("Look at the body of `material.{name}`: its forces do not balance."));
     }
     lines.extend(
         [
-            "the load may be more than the body can carry: look at the displacements of the last frame, and at `bsmpm fos`",
-            "look at the worst nodes: next to nearly empty cells a larger [solver] background helps",
-            "more steps ([analysis] steps or dt), or a [stabilisation] where poisson is above .45 or the soil yields",
+            "The load may exceed the strength. Look at the last frame, and run `bsmpm fos`.",
+            "Look at the worst nodes. Next to nearly empty cells a larger `solver.background` helps.",
+            "Increase `analysis.steps`, or set `stabilisation.method`, if the soil is nearly incompressible or yields.",
         ]
         .map(str::to_owned),
     );

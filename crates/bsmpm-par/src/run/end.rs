@@ -1,6 +1,7 @@
 //! The ends of a run.
 
 use super::Run;
+use super::summary::StopCause;
 use crate::indicators::{self, IndicatorState};
 use crate::launch;
 use crate::limit_load;
@@ -21,14 +22,17 @@ use std::rc::Rc;
 
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Ends the run at the last converged state; the work of a step that was given up counts for nothing.
-    pub(super) fn stop_on_request(self) -> u8 {
-        self.log.line("stop", "stopped by a signal; the last converged state is saved");
+    pub(super) fn stop(mut self, cause: StopCause) -> u8 {
+        self.stop_cause = Some(cause);
         self.end(Status::Stopped, exit::STOPPED)
     }
 
-    /// Ends the run before it has a state to go on from: it starts anew.
+    /// Ends the run before it has a state to continue from.
     pub(super) fn stop_at_start(mut self) -> u8 {
-        self.log.line("stop", "stopped by a signal before the stress at the start was found; nothing is saved");
+        self.log.cause(
+            "stop",
+            "Stopped by a signal before the initial stress was computed. There is no state to continue from: start the run again.",
+        );
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.close(Status::Stopped, exit::STOPPED));
         self.require(written);
         exit::STOPPED
@@ -40,22 +44,35 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let mut failed = [0.0; 2];
         let mut run = self;
         run.tell_vacant();
+        let mut warnings = Vec::new();
         if let Some(ledger) = &mut run.ledger {
             failed[0] = f64::from(!ledger.judge());
             if let Ok(history) = table::read(&ledger.path().join(HISTORY)) {
                 ledger.manifest().limit_loads = limit_load::found(&run.case, &history);
             }
+            warnings = limit_load::warnings(&ledger.manifest().limit_loads);
             for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {
                 let number = |number: Option<f64>| number.map_or("-".to_owned(), |number| format!("{number}"));
                 let (value, least, most) = (number(check.value), number(check.min), number(check.max));
-                run.log.failure(&format!("check failed: {} = {value}, allowed: {least} to {most}", check.quantity));
+                let quantity = &check.quantity;
+                run.log.failure(&format!(
+                    "E0730: check of `{quantity}` failed: it is {value} (allowed: {least} to {most}). The run is complete, with exit \
+                     code 77. Look at history.csv, or change the limits of [[check]]."
+                ));
             }
         }
+        warnings.into_iter().for_each(|warning| run.warn(warning));
         run.judge_itself();
         if let Some(ledger) = &mut run.ledger {
-            for (name, found) in ledger.manifest().indicators.iter().filter(|(_, found)| found.ends_run()) {
-                failed[1] = 1.0;
+            let ending = ledger.manifest().indicators.iter().filter(|(_, found)| found.ends_run());
+            let ending: Vec<_> = ending.collect();
+            for (name, found) in &ending {
                 run.log.failure(&indicators::description(name, found));
+            }
+            if !ending.is_empty() {
+                failed[1] = 1.0;
+                let names: Vec<&str> = ending.iter().map(|(name, _)| name.as_str()).collect();
+                run.log.cause("acceptance", &indicators::acceptance(&names));
             }
         }
         run.simulation.halo.maximum(&mut failed);
@@ -87,7 +104,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.close(status, code));
         self.require(written);
         self.log.finish();
-        self.summarise(status);
+        self.summarise(code);
         code
     }
 
@@ -136,43 +153,6 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         manifest.timers.insert("wall".into(), wall);
     }
-
-    fn summarise(&mut self, status: Status) {
-        let wall = self.wall();
-        let Some(ledger) = &mut self.ledger else { return };
-        let summary = ledger.manifest().summary.clone();
-        let found = ledger.manifest().indicators.clone();
-        let text = format!(
-            "{status:?} at t = {}: {} steps, {} iterations, {} cuts, {:.1} s by the clock, {:.1} CPU s, \
-             {:.0} MiB on the largest rank; written to {}",
-            self.simulation.time(),
-            summary.steps,
-            summary.iterations,
-            summary.cutbacks,
-            wall,
-            summary.cpu_seconds,
-            summary.peak_memory.iter().max().copied().unwrap_or(0) as f64 / 1_048_576.0,
-            ledger.path().display()
-        );
-        self.log.line("end", &text);
-        let limit_loads = limit_load::report_lines(&self.case, &ledger.manifest().limit_loads);
-        limit_loads.iter().for_each(|line| self.log.line("limit-load", line));
-        if summary.settled_steps > 0 {
-            let text = format!(
-                "{} steps were accepted by their forces alone, balanced ten times better than asked: no method led on to the \
-                 energy tolerance, as where the body yields as a whole; more steps, or a background, may",
-                summary.settled_steps
-            );
-            self.log.line("settled", &text);
-        }
-        if !found.is_empty() {
-            self.log.line("indicators", &indicators::line(&found));
-        }
-        // Those that end the run have been named.
-        for (name, indicator) in found.iter().filter(|(_, found)| found.unusual && !found.ends_run()) {
-            self.log.line("indicator", &indicators::description(name, indicator));
-        }
-    }
 }
 
 /// How the linear solves `before` ended and those since then.
@@ -190,7 +170,7 @@ fn linear(before: &BTreeMap<String, SolverNames>, tallies: &Tallies) -> BTreeMap
     all
 }
 
-/// What the ranks have told each other `before` and since then, of which the sums over the ranks are known and the
+/// What the ranks have sent each other `before` and since then, of which the sums over the ranks are known and the
 /// largest.
 fn communication(
     before: &BTreeMap<String, Communication>,

@@ -1,41 +1,41 @@
-//! Steps that cannot be made: what is told, and the exit code.
+//! Steps that cannot be made: what is reported, and the exit code.
 
 use super::{Run, diagnosis};
+use crate::log::short;
 use bsmpm::control::Failure;
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::step::Counts;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::Status;
+use bsmpm_messages::without_code;
 use bsmpm_ranks::launch;
 
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Ends the run after a step that failed.
     pub(super) fn fail(mut self, failure: &Failure) -> u8 {
-        let told = match failure.attempts.last() {
-            Some(StepError::EnergyMade { .. }) => {
-                format!("ended after step {} at t = {}", self.simulation.steps(), failure.t)
-            }
-            _ => format!(
-                "step {} failed at t = {} after {} attempt(s), the last with dt = {:.3e}",
-                self.simulation.steps() + 1,
-                failure.t,
-                failure.attempts.len(),
-                failure.dt
-            ),
+        let t = short(failure.t);
+        let unit = self.time_unit();
+        let made = self.simulation.steps();
+        let subject = match (failure.attempts.last(), failure.attempts.len()) {
+            (Some(StepError::EnergyMade { .. }), _) => format!("step {made} at t = {t}{unit} was the last"),
+            (_, 1) => format!("step {} failed (t = {t}{unit})", made + 1),
+            (_, attempts) => format!("step {} failed (t = {t}{unit}, {attempts} attempts)", made + 1),
         };
+        if let Some((_, rejected)) = failure.attempts.split_last() {
+            self.log.rejected(made + 1, rejected);
+        }
         if let Some(ledger) = &mut self.ledger {
             ledger.attempts(failure.attempts.len() - 1, failure.counts);
         }
-        let (run, code) =
-            self.give_up(failure, (&told, "; the last converged state is saved, failure.json tells more"));
+        let (run, code) = self.give_up(failure, &subject);
         run.end(Status::Failed, code)
     }
 
     /// Ends the run whose points could not be given their stress at the start.
     pub(super) fn fail_at_start(self, error: StepError) -> u8 {
         let failure = Failure { t: 0.0, dt: 0.0, attempts: vec![error], counts: Counts::default() };
-        let (run, code) = self.give_up(&failure, ("the stress at the start", "; failure.json tells more"));
+        let (run, code) = self.give_up(&failure, "the initial stress failed");
         run.close(Status::Failed, code)
     }
 
@@ -43,20 +43,25 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     pub(super) fn fail_at_stage(self, error: StepError) -> u8 {
         let t = self.simulation.time();
         let failure = Failure { t, dt: 0.0, attempts: vec![error], counts: Counts::default() };
-        let told = format!("the stage at t = {t}");
-        let (run, code) = self.give_up(&failure, (&told, "; failure.json tells more"));
+        let (run, code) = self.give_up(&failure, &format!("the stage at t = {} failed", short(t)));
         run.close(Status::Failed, code)
     }
 
-    fn give_up(mut self, failure: &Failure, (told, end): (&str, &str)) -> (Self, u8) {
+    /// Writes why the run ends, and prints it with its code. `subject` is what failed.
+    fn give_up(mut self, failure: &Failure, subject: &str) -> (Self, u8) {
         let step = self.simulation.steps() + 1;
         let code = launch::agree(&self.universe.world(), code_of(failure.attempts.last(), step));
         let report = diagnosis::of(&self.universe.world(), failure, step, &self.case);
-        let reason = report.attempts.last().map_or("", String::as_str);
-        let place = report.worst.first();
-        let place = place.map_or_else(String::new, |w| format!("; {} {} at {:?}", w.kind, w.id, w.position));
-        let advice = report.advice.first().map_or_else(String::new, |advice| format!("; try: {advice}"));
-        self.log.failure(&format!("{told}: {reason}{place}{advice}{end}"));
+        let error = report.attempts.last().map_or("", String::as_str);
+        let cause = without_code(error);
+        let head = bsmpm_messages::code_of(error).map_or_else(String::new, |code| format!("{code}: "));
+        let advice = report.advice.first().map_or_else(String::new, |advice| format!(" {advice}"));
+        self.log.failure(&format!("{head}{subject}: {cause}{advice}"));
+        if let Some(place) = report.worst.first() {
+            let at: Vec<String> = place.position.iter().map(|x| short(*x)).collect();
+            let kind = if place.kind == "point" { "material point" } else { "node" };
+            self.log.cause("place", &format!("Location: {kind} {} at [{}] m.", place.id, at.join(", ")));
+        }
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.failure(&report));
         self.require(written);
         (self, code)

@@ -78,7 +78,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if !self.simulation.halo.requests().take_save() {
             return Ok(());
         }
-        self.log.line("save", "a frame and a checkpoint are written, as a signal has asked");
+        self.log.line("save", "Writing a frame and a checkpoint, as requested by a signal.");
         self.frame_if_new();
         self.checkpoint()
     }
@@ -105,7 +105,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let mebibytes = found.record.bytes as f64 / 1_048_576.0;
             let written = ledger.checkpointed(&found);
             let seconds = begin.elapsed().as_secs_f64();
-            self.log.line("checkpoint", &format!("checkpoint of step {step}: {mebibytes:.1} MiB in {seconds:.2} s"));
+            let text = format!("Checkpoint of step {step} written: {mebibytes:.1} MiB in {seconds:.2} s.");
+            self.log.detail("checkpoint", &text);
             self.require(written);
         }
         let (last, cost) = (Instant::now(), begin.elapsed().as_secs_f64());

@@ -3,6 +3,7 @@
 
 use super::Run;
 use crate::launch;
+use crate::log::short;
 use bsmpm::energy::Stored;
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
@@ -58,18 +59,18 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let (applied, released) = (names(&stage.apply), names(&stage.release));
         let strength_reduction = stage.strength_reduction;
         let changes = [
-            (removed > 0).then(|| format!("{removed} points removed")),
-            (added > 0).then(|| format!("{added} points added")),
+            (removed > 0).then(|| format!("{removed} material points removed")),
+            (added > 0).then(|| format!("{added} material points added")),
             (!applied.is_empty()).then(|| format!("{} applied", applied.join(", "))),
             (!released.is_empty()).then(|| format!("{} released", released.join(", "))),
             (!faces.is_empty()).then(|| faces.join(", ")),
             (!exchanged.is_empty()).then(|| exchanged.join(", ")),
             strength_reduction.map(|factor| format!("strength divided by {factor}")),
-            stage.rests.then(|| "the water rests".to_owned()),
+            stage.rests.then(|| "the water is at rest".to_owned()),
             stage.resets_displacements.then(|| "displacements set to zero".to_owned()),
         ];
         let changes: Vec<String> = changes.into_iter().flatten().collect();
-        self.log.line("stage", &format!("stage{name} at t = {time}: {}", changes.join(", ")));
+        self.log.line("stage", &format!("Stage{name} at t = {}: {}.", short(time), changes.join(", ")));
         if let Some(ledger) = &mut self.ledger {
             let name = stage.name.clone();
             let reset = stage.resets_displacements;

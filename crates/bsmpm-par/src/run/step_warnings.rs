@@ -2,6 +2,7 @@
 
 use super::Run;
 use crate::checkpoint::Outlet;
+use crate::log::short;
 use bsmpm::control::Accepted;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::tensor::Vector;
@@ -26,8 +27,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let given = |name: &String| self.arguments.petsc.iter().any(|option| option.strip_prefix('-') == Some(name));
         let misspelt: Vec<String> = unused.into_iter().filter(given).collect();
         for name in misspelt {
-            let warning =
-                format!("the PETSc option -{name} was not used: it is misspelt, or the solver has no such part");
+            let warning = format!(
+                "W0701: the PETSc option -{name} was not used. The solver ignores it. Check its spelling, and whether the solver has it."
+            );
             self.warn(warning);
         }
     }
@@ -35,18 +37,18 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// A rigid body that comes so fast that points are met too late, or so light a penalty that they go into it.
     pub(super) fn tell_rigid(&mut self, accepted: &Accepted) {
         for (number, report) in accepted.report.rigid.iter().enumerate() {
-            let (name, t) = (self.case.rigid[number].name.clone(), accepted.t);
+            let (name, t) = (self.case.rigid[number].name.clone(), short(accepted.t));
             let (advance, depth) = (report.advance, report.penetration);
             if advance > FASTEST && self.told_rigid.insert(2 * number) {
                 self.warn(format!(
-                    "rigid `{name}`: at t = {t} it moves {advance:.2} cells in a step at soil that it touches; points are met \
-                     right up to {FASTEST}: more steps"
+                    "W0702: rigid body `{name}` moves {advance:.2} cells in a step at t = {t} (limit: {FASTEST}). Contact is detected too \
+                     late. Increase `analysis.steps`, or reduce `analysis.dt`."
                 ));
             }
             if depth > DEEPEST && self.told_rigid.insert(2 * number + 1) {
                 self.warn(format!(
-                    "rigid `{name}`: at t = {t} points are {depth:.2} cells in it, usually 1e-4: it was pushed over them, or \
-                     its force is beyond what its penalty is made for; more steps"
+                    "W0703: rigid body `{name}` penetrates the soil by {depth:.2} cells at t = {t} (limit: {DEEPEST}). Its force is \
+                     inaccurate. Increase `analysis.steps`, or reduce `analysis.dt`."
                 ));
             }
         }
@@ -74,17 +76,17 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let mut holding = faces.filter(|of| !matches!(of.support, Support::Free | Support::Outflow));
             let Some(through) = holding.find(|of| of.face.axis < D && further(of.face)) else { continue };
             let (name, side) = (self.case.rigid[number].name.clone(), through.face.side(self.case.geometry));
+            let t = short(accepted.t);
             self.told_rigid.insert(known);
             self.warn(format!(
-                "rigid `{name}`: at t = {} it goes through the face {side} of the grid: faces hold material, and no rigid \
-                 bodies; what shall stop it is soil before that face",
-                accepted.t
+                "W0704: rigid body `{name}` passes through boundary `{side}` at t = {t}. Boundaries do not support rigid bodies. \
+                 Place soil in front of the boundary, or change the motion of the body."
             ));
         }
     }
 
     /// A strip that holds nothing, or no longer the material that it held, does nothing of what it is there for, which
-    /// no other number tells.
+    /// no other number shows.
     pub(super) fn tell_strips_without_material(&mut self, accepted: &Accepted) {
         for (number, strip) in accepted.report.strips.iter().enumerate() {
             let on = &self.simulation.model.boundary.strips[number];
@@ -92,35 +94,36 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 continue;
             }
             let points = on.points.len();
-            let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), accepted.t);
+            let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), short(accepted.t));
             let mut kind = number;
-            let told = if strip.held == 0 {
-                format!("{name} holds nothing: at t = {t} no free material is at it")
+            let warning = if strip.held == 0 {
+                format!(
+                    "W0705: `{name}` touches no material at t = {t}. It has no effect. Check its position and its path."
+                )
             } else if 2 * strip.left_behind > points {
                 kind += accepted.report.strips.len();
                 format!(
-                    "{name} has let go: at t = {t} most of it is more than half a cell ahead of the material that it held at the \
-                     start, and its force is no longer that of a strip that holds; smaller cells and more points_per_cell \
-                     hold longer, and soil that must not be pulled wants a motion without it"
+                    "W0706: `{name}` lost contact at t = {t}: most of it is more than half a cell from the material. Its reaction is no \
+                     longer valid. Use smaller cells, or reduce the uplift."
                 )
             } else if strip.moved_on > 0 {
                 kind += 2 * accepted.report.strips.len();
                 format!(
-                    "{name} comes down at t = {t} more than half a cell from where it had come off: it meets the material as \
-                     high as where it left it, which is right on a level surface only"
+                    "W0707: `{name}` returns to the soil at t = {t} at another place than it left. The ground is assumed to be level \
+                     there. Let it return at the same place."
                 )
             } else {
                 continue;
             };
             if self.told_strips.insert(kind) {
-                self.warn(told);
+                self.warn(warning);
             }
         }
     }
 
     /// A drain or an inflow most of which has no ground near lets nothing through there.
     pub(super) fn tell_drains(&mut self, accepted: &Accepted) {
-        let (Some(water), t) = (&accepted.report.water, accepted.t) else { return };
+        let (Some(water), t) = (&accepted.report.water, short(accepted.t)) else { return };
         let model = &self.simulation.model;
         let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
         let Some(flow) = flow.filter(|flow| flow.motion == Motion::Flows) else { return };
@@ -132,8 +135,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
             if self.told_strips.insert(of_strips + number) {
                 self.warn(format!(
-                    "{name}: at t = {t} most of it is out of the grid or has no ground near, and lets no water through; where the \
-                     surface heaves, a grid that goes on a cell beyond it"
+                    "W0708: most of `{name}` has no soil near it at t = {t}. Water does not flow there. If the surface heaves, extend the \
+                     grid by a cell beyond it."
                 ));
             }
         }
@@ -141,9 +144,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
             if self.told_strips.insert(of_strips + points.len() + number) {
                 self.warn(format!(
-                    "{name}: at t = {t} points of it that were neighbours at the start are {:.1} cells apart: the ground has come \
-                     apart or is stretched between them, and its new surface there is closed, so that no water seeps out of it or \
-                     goes in; hold the result against that of drainage = \"hydrostatic\", the other bound",
+                    "W0709: the surface of `{name}` has torn by {:.1} cells at t = {t}. The new surface is impermeable. Compare the result \
+                     with that of `drainage = \"hydrostatic\"`.",
                     water.torn[number]
                 ));
             }
@@ -153,7 +155,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// Ground that goes away from a drained face of the grid leaves its drain there. `known`: of the first.
     fn tell_drained_faces(&mut self, accepted: &Accepted, known: usize) {
-        let (Some(water), t) = (&accepted.report.water, accepted.t) else { return };
+        let (Some(water), t) = (&accepted.report.water, short(accepted.t)) else { return };
         let flow = self.simulation.model.water.as_ref().and_then(|water| water.flow.as_ref());
         let acts: Vec<bool> = flow.map_or_else(Vec::new, |flow| flow.faces.iter().map(|face| face.acts).collect());
         for (number, face) in water.faces.iter().enumerate().filter(|(number, _)| acts[*number]) {
@@ -163,18 +165,16 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             }
             let name = bsmpm_scene::surfaces::name_of_drained_face(&self.case, number);
             let share = 100.0 * face.off as f64 / face.near.max(1) as f64;
-            let what = if sealed {
-                "no ground is left at its face of the grid: it is sealed, and no water crosses it any more".into()
-            } else {
-                format!(
-                    "{share:.0} % of the ground at its face of the grid have moved off by more than a fifth of a cell: too little \
-                     water goes through it from there on, and none after a cell"
-                )
-            };
-            self.warn(format!(
-                "{name}: at t = {t} {what}; a face does not go with the ground: name the surface of the body instead, by \
-                 surface = true or from and to (solid: a rectangle or disc)"
-            ));
+            self.warn(match sealed {
+                true => format!(
+                    "W0710: `{name}` has no soil at its boundary at t = {t}. Water cannot cross it. Use `surface`, or `from` and `to`, so \
+                     that the drain moves with the soil."
+                ),
+                false => format!(
+                    "W0711: {share:.0} % of the soil at `{name}` has moved off its boundary at t = {t}. The flow there is too small. Use \
+                     `surface`, or `from` and `to`, so that the drain moves with the soil."
+                ),
+            });
         }
     }
 
@@ -182,17 +182,18 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     pub(super) fn tell_vacant(&mut self) {
         if let Some(names) = self.recorder.vacant() {
             self.warn(format!(
-                "no point was in the box of these histories in any step, and they tell nothing of the ground: {names}; a box stays \
-                 where it is in space"
+                "W0712: no material point entered the box of these histories: {names}. Their values are 0. Move the box, which is \
+                 fixed in space, to where the soil is."
             ));
         }
     }
 
-    /// Material that leaves is told when the first does, and counted in the manifest.
+    /// Material that leaves is reported when the first does, and counted in the manifest.
     pub(super) fn tell_outflow(&mut self, accepted: &Accepted) {
         let Some(outflow) = &accepted.report.outflow else { return };
         if self.recorder.left().points == 0 {
-            let message = format!("material leaves the grid from t = {} on: run.json counts it", accepted.t);
+            let t = short(accepted.t);
+            let message = format!("Material leaves the grid from t = {t} on. Its amount is in run.json (`outflow`).");
             self.log.line("outflow", &message);
         }
         let Simulation { points, halo, .. } = &self.simulation;
@@ -202,9 +203,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             ledger.manifest().outflow = Some(ManifestOutflow { points, mass: mass * self.case.geometry.whole() });
         }
         for name in lost {
-            let t = accepted.t;
+            let t = short(accepted.t);
             self.warn(format!(
-                "history {name}: the point that it followed has left the grid at t = {t}; it reads 0 since"
+                "W0713: the material point of history `{name}` left the grid at t = {t}. Its values are 0 from then on. Use a larger \
+                 grid, or another point."
             ));
         }
     }

@@ -11,6 +11,24 @@ use crate::words::{AnalysisType, Purpose};
 /// What steps follow from.
 pub(super) const STEPS: &str = "[analysis], the cells, the stiffness and density of the soil and prescribed motions";
 
+/// Keys without which neither cells nor steps can be chosen.
+pub(super) const BASIS: &[&str] = &[
+    "analysis.type",
+    "analysis.end",
+    "body",
+    "boundary",
+    "footing",
+    "geometry",
+    "grid.lower",
+    "grid.upper",
+    "material",
+    "point_load",
+    "prescribed",
+    "rigid",
+    "shaking",
+    "traction",
+];
+
 /// Steps at most that are filled in: more are the author's to ask for.
 const MOST_STEPS: f64 = 1e8;
 

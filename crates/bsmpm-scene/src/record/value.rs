@@ -119,7 +119,15 @@ impl ValueReader<'_, '_> {
     }
 
     fn unexpected<T>(&mut self, node: &Node) -> Option<T> {
-        self.fail(node, expected(self.kind, node))
+        let message = expected(self.kind, node);
+        match self.kind {
+            // How many numbers there are follows from the number of dimensions.
+            Kind::Vector(..) | Kind::PairProfile(..) | Kind::GradientVector(_) | Kind::Either(..) | Kind::Course(_) => {
+                self.report.consequence(node.origin, self.path, message, &["geometry"]);
+                None
+            }
+            _ => self.fail(node, message),
+        }
     }
 
     /// A file that was named where none is read.
@@ -205,6 +213,14 @@ impl ValueReader<'_, '_> {
                  Write a number, in m per unit of pseudo-time.",
                 node.show()
             )),
+            Dimension::Density if unit::parse(text, Dimension::UnitWeight).is_ok() => Err(format!(
+                "E0050: {} is a unit weight, not a density. Write unit_weight = {}.",
+                node.show(),
+                node.show()
+            )),
+            Dimension::UnitWeight if unit::parse(text, Dimension::Density).is_ok() => {
+                Err(format!("E0050: {} is a density, not a unit weight. Write density = {}.", node.show(), node.show()))
+            }
             Dimension::LineForce if self.geometry != Geometry::PlaneStrain => unit::parse(text, Dimension::Force),
             _ => unit::parse(text, dimension),
         }

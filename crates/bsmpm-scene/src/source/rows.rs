@@ -8,10 +8,6 @@ use std::ops::Range;
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
-/// Of a ground motion in the format of the PEER database.
-const PEER: &str = "E0012: PEER records (.AT2) are not read. Convert the record to rows of time and acceleration with \
-                    the heading `t [s], a [g]`.";
-
 /// A table in the place of rows, as it is written.
 struct FileReference<'a> {
     span: Range<usize>,
@@ -38,16 +34,7 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
         let in_file = |error: Error| Error::new(error.kind(), with_context(&error.to_string(), file));
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(in_file)?;
-        let has_ending = |ending: &str| file.to_ascii_lowercase().ends_with(ending);
-        let found = if has_ending(".at2") {
-            Err(Error::new(ErrorKind::InvalidData, PEER))
-        } else if stl::is_binary(&bytes) {
-            stl::triangles(&bytes)
-        } else if has_ending(".stl") && bytes.contains(&0) {
-            Err(stl::broken(&bytes))
-        } else {
-            text_rows(bytes, (along, axes))
-        };
+        let found = rows_of(file, bytes, (along, axes));
         whole.push_str(&found.map_err(in_file)?);
         from = span.end;
     }
@@ -58,17 +45,38 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
 /// The axis that a file names, if it does, and those that the geometry has.
 type AxisNames<'a> = (Option<&'a str>, &'a [&'a str]);
 
+/// Rows of a file, whose format follows from its name and its bytes.
+fn rows_of(file: &str, bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
+    let has_ending = |ending: &str| file.to_ascii_lowercase().ends_with(ending);
+    if has_ending(".at2") {
+        Err(Error::new(ErrorKind::InvalidData, PEER))
+    } else if stl::is_binary(&bytes) {
+        stl::triangles(&bytes)
+    } else if has_ending(".stl") && bytes.contains(&0) {
+        Err(stl::broken(&bytes))
+    } else {
+        text_rows(bytes, along)
+    }
+}
+
 /// Rows of whatever text holds them.
 fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
     let text = String::from_utf8(bytes)
         .map_err(|_| Error::new(ErrorKind::InvalidData, "E0002: the file is not UTF-8 text. Save it as UTF-8."))?;
     let begins = |word: &str| text.trim_start().get(..word.len()).is_some_and(|of| of.eq_ignore_ascii_case(word));
+    if begins("PEER") || text.lines().take(4).any(|line| line.trim_start().to_ascii_uppercase().starts_with("NPTS")) {
+        return Err(Error::new(ErrorKind::InvalidData, PEER));
+    }
     match (begins("ncols"), begins("solid")) {
         (true, _) => grid(&text),
         (_, true) => stl::facets(&text),
         _ => rows(&text, along),
     }
 }
+
+/// Of a record as the databases of ground motions write it.
+const PEER: &str = "E0049: this is a record in PEER's format (.AT2), which is not read. Write a text file with the columns \
+                    `t [s], a [g]`, one row per sample: t is the number of the row times DT.";
 
 /// The bytes of a file that is not longer than a case may be.
 fn read(path: &Path) -> io::Result<Vec<u8>> {
@@ -243,7 +251,7 @@ fn unit(heading: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{grid, rows};
+    use super::{grid, rows, rows_of};
 
     const PLANE: &[&str] = &["x", "y"];
 
@@ -285,6 +293,13 @@ mod tests {
         assert_eq!(parsed, "[[\"0.02 s\",\"3.0 cm/s2\",0.0],]");
         assert_eq!(rows("t a\n1 2", (Some("y"), PLANE)).unwrap(), "[[1.0,0.0,2.0],]");
         assert_eq!(rows("1 2", (Some("y"), &["x", "y", "z"])).unwrap(), "[[1.0,0.0,2.0,0.0],]");
+    }
+
+    #[test]
+    fn a_peer_record_is_refused_with_what_to_do() {
+        let record = b"PEER\nKOBE\nACCELERATION\nNPTS= 2, DT= .01 SEC\n 1.0E-3 2.0E-3\n".to_vec();
+        let message = rows_of("kobe.AT2", record, (None, PLANE)).unwrap_err().to_string();
+        assert!(message.starts_with("E0049: ") && message.contains("t [s], a [g]"), "{message}");
     }
 
     #[test]

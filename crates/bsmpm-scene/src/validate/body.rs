@@ -30,7 +30,12 @@ pub(super) fn read_all(
 ) -> Option<Vec<Body>> {
     let records = root.records("body");
     if root.gives("body") && records.is_empty() {
-        root.error("body", "E0213: the case has no body. Add a [[body]] with a material and a shape.", report);
+        root.consequence(
+            "body",
+            "E0213: the case has no body. Add a [[body]] with a material and a shape.",
+            &["body"],
+            report,
+        );
     }
     if records.len() > MOST {
         let message = format!("E0214: the case has {} bodies (at most {MOST}). Merge some of them.", records.len());
@@ -195,7 +200,7 @@ fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<u
             Some(known) => format!("E0220: [material.{name_as_given}] is not defined. Did you mean `{known}`?"),
             None => format!("E0220: [material.{name_as_given}] is not defined. Define it, or correct the name."),
         };
-        record.error("material", message, report);
+        record.consequence("material", message, &["material"], report);
     }
     found
 }

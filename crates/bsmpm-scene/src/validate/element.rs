@@ -43,12 +43,9 @@ fn read(
     let material = material(record, materials, report);
     let stages = record.records("stage");
     if record.gives("stage") && stages.is_empty() {
-        record.error(
-            "stage",
-            "E0690: the test has no stage. Add for example stage = [{ test = \"triaxial\", \
-                               compression = 0.05 }].",
-            report,
-        );
+        let message =
+            "E0690: the test has no stage. Add for example stage = [{ test = \"triaxial\", compression = 0.05 }].";
+        record.consequence("stage", message, &[&record.path_of("stage")], report);
     }
     let mut undrained = false;
     let mut read = Vec::with_capacity(stages.len());

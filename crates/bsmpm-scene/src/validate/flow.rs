@@ -25,8 +25,16 @@ use bsmpm::water::retention::{Curve, Measured, Retention};
 const WATER: f64 = 9810.0;
 /// Parts of a cell by which a body may be off a face that it lies at.
 const AT: f64 = 1e-9;
+/// Keys without which it is not known where permeable soil is.
+const PERMEABLE: &[&str] = &["body", "material"];
 /// Permeability, m/s, beyond which a number is taken for a slip: that of gravel without sand.
 const MOST_PERMEABLE: f64 = 1.0;
+/// The same, m/s, of the tightest clay.
+const LEAST_PERMEABLE: f64 = 1e-14;
+
+/// Message of a key that only pore-water flow uses.
+const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this has no effect. Set `drainage = \
+                            \"coupled\"` with `porosity` and `permeability`, or remove this.";
 
 /// Drainage that the case gives a material.
 fn drainage(root: &Record, material: &Record) -> Option<Drainage> {
@@ -47,12 +55,11 @@ pub(super) fn read(
     let flows = soils.iter().any(|soil| !matches!(soil, Some(None)));
     for key in ["drain", "inflow"] {
         if let Some(record) = root.records(key).first().filter(|_| !flows) {
-            let message = "no material lets water flow: give it drainage = \"coupled\", a porosity and a permeability";
-            report.error(record.origin, &record.path, message);
+            report.error(record.origin, &record.path, WITHOUT_FLOW);
         }
     }
     if let Some(water) = root.record("water").filter(|water| !flows && water.gives("bulk")) {
-        water.error("bulk", "water that does not flow is not compressed: no material is \"coupled\"", report);
+        water.error("bulk", WITHOUT_FLOW, report);
     }
     if !flows {
         return Some(None);
@@ -96,10 +103,14 @@ fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64>
     const KEY: &str = "suction";
     let Some(water) = root.record("water").filter(|water| water.gives(KEY)) else { return Some(f64::INFINITY) };
     if !retains {
-        water.error(KEY, "no soil keeps water under suction: give a material a retention", report);
+        let message = "E0503: no material has a `retention` curve, so the suction has no effect. Give one to the \
+                       soil above the water table, or remove `suction`.";
+        water.consequence(KEY, message, &["material"], report);
     }
     if ["level", "level_path", "line", "line_path"].iter().all(|key| !water.gives(key)) {
-        water.error(KEY, "is that above a level: give level, level_path, line or line_path", report);
+        let message = "E0504: the suction is limited above a water table, and there is none. Give `water.level`, \
+                       `level_path`, `line` or `line_path`.";
+        water.error(KEY, message, report);
     }
     water.number(KEY)
 }
@@ -127,11 +138,17 @@ fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Optio
     let known = if drainage == Drainage::Coupled { FLOWING.len() } else { needs.len() };
     let mut failed = false;
     for key in needs.iter().filter(|key| !record.gives(key)) {
-        report.error(record.origin, &record.path_of(key), format!("missing; drainage = \"{drainage}\" needs it"));
+        let message = format!(
+            "E0505: the key is missing, but `drainage = \"{drainage}\"` requires it. Add the key, or change `drainage`."
+        );
+        report.error(record.origin, &record.path_of(key), message);
         failed = true;
     }
     for key in FLOWING[known..].iter().filter(|key| record.gives(key)) {
-        let message = format!("has no meaning with drainage = \"{drainage}\"; give drainage = \"coupled\"");
+        let message = format!(
+            "E0506: the key has no effect with `drainage = \"{drainage}\"`. Set `drainage = \"coupled\"` for \
+             pore-water flow, or remove the key."
+        );
         record.error(key, message, report);
         failed = true;
     }
@@ -158,13 +175,16 @@ fn retention(of: &Record, report: &mut Report<'_>) -> Option<Retention> {
     let residual = of.number("residual")?;
     if !of.gives("curve") {
         if !of.gives("n") {
-            of.error("alpha", "goes with n: give both", report);
+            let message = "E0507: `alpha` of van Genuchten's curve requires `n`, which is missing. Add `n`, or give a \
+                           measured `curve` instead.";
+            of.error("alpha", message, report);
             return None;
         }
         return Some(Retention::van_genuchten(of.number("alpha")?, of.number("n")?, residual));
     }
     if of.gives("n") {
-        of.error("n", "has no meaning with a curve: leave it out", report);
+        let message = "E0508: `n` has no effect with a measured `curve`. Remove `n`, or replace `curve` by `alpha`.";
+        of.error("n", message, report);
         return None;
     }
     let rows = measured(of, residual, report)?;
@@ -178,14 +198,23 @@ fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[
     let rises = |pair: &[[f64; 3]]| pair[1][1] > pair[0][1] || pair[1][2] > pair[0][2];
     let last = rows[rows.len() - 1];
     let wrong = if rows[0] != [0.0, 1.0, 1.0] {
-        Some("the first row is that of the full soil, [0, 1, 1]".into())
+        Some("E0509: the first row is not that of saturated soil. Begin the curve with [0, 1, 1].".into())
     } else if rows.len() < 2 {
-        Some("needs two rows at least".into())
+        let message = "E0509: the curve has one row, but needs at least two. Add rows [suction head, saturation, \
+                       relative permeability].";
+        Some(message.into())
     } else if let Some(pair) = rows.windows(2).find(|pair| rises(pair)) {
         let (to, from) = (pair[1][0], pair[0][0]);
-        Some(format!("at the suction of {to} m it keeps or conducts more than at {from} m: both fall, or stay"))
+        Some(format!(
+            "E0509: from a suction head of {from} m to {to} m the saturation or relative permeability increases. Give \
+             values that decrease or stay constant."
+        ))
     } else if last[1] < residual {
-        Some(format!("its last saturation, {}, is below the residual one, {residual}", last[1]))
+        Some(format!(
+            "E0509: the last saturation, {}, is below the residual saturation, {residual}. Reduce `residual`, or \
+             end the curve at a higher saturation.",
+            last[1]
+        ))
     } else {
         None
     };
@@ -202,7 +231,17 @@ fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability
     let along = [0, 1, 2].map(|axis| given[axis.min(given.len() - 1)]);
     if let Some(much) = along.into_iter().find(|k| *k > MOST_PERMEABLE) {
         let path = record.path_of("permeability");
-        report.warn(format!("{path}: {much} m/s is more than that of gravel: check the unit"));
+        report.warn(format!(
+            "W0109: {path}: {much} m/s is more permeable than gravel (up to {MOST_PERMEABLE} m/s), so the soil \
+             would drain at once. Check the unit, and write it: \"1e-5 m/s\"."
+        ));
+    }
+    if let Some(little) = along.into_iter().find(|k| *k > 0.0 && *k < LEAST_PERMEABLE) {
+        report.warn(format!(
+            "W0109: {}: {little:e} m/s is less than that of bentonite (1e-14 m/s). If it is an intrinsic permeability in m2, \
+             multiply it by 1e7 1/(m s).",
+            record.path_of("permeability")
+        ));
     }
     let law = record.word_if_given("permeability_law")?.unwrap_or(PermeabilityLaw::Constant);
     Some(Permeability { along: along.into(), law })
@@ -268,18 +307,20 @@ impl Ground<'_> {
             let at = &at[..grid.dims()];
             let message = match under {
                 Some(body) => format!(
-                    "the body at {at:?} is of material.{}, which lets no water through: give it a permeability",
+                    "E0510: the body at {at:.3?} m is of material `{}`, which has no pore-water flow. Set its \
+                     `drainage = \"coupled\"` with `porosity` and `permeability`.",
                     self.materials[body.material].name
                 ),
                 None if comes => format!(
-                    "no body is at {at:?} when it begins to act, at the start unless a stage applies it: name it, and let the \
-                     stage that places the body apply it"
+                    "E0511: no body is at {at:.3?} m yet when this begins to act. Give the drain or inflow a \
+                     `name`, and list it in `activate` of the stage that adds the body."
                 ),
-                None => {
-                    format!("no body is at {at:?} at the start; allowed: half a spacing of points from one")
-                }
+                None => format!(
+                    "E0512: no body is at {at:.3?} m at the start, nor within half a spacing of material points. \
+                     Move this place to the surface of the soil."
+                ),
             };
-            record.error(key, message, report);
+            record.consequence(key, message, PERMEABLE, report);
             return None;
         }
         Some(())
@@ -292,7 +333,11 @@ fn named(root: &Record, report: &mut Report<'_>) {
     for (number, record) in drains.iter().enumerate() {
         let Some(name) = record.text("name") else { continue };
         if drains[..number].iter().any(|other| other.text("name") == Some(name)) {
-            record.error("name", format!("there is a drain `{name}` already"), report);
+            let message = format!(
+                "E0513: another drain is also called `{name}`, so histories and stages cannot distinguish them. \
+                 Give each drain its own name."
+            );
+            record.error("name", message, report);
         }
     }
 }
@@ -303,7 +348,9 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
         DrainSite::Face(face(record, ground, report)?)
     } else if record.gives("surface") {
         if !record.flag("surface")? {
-            record.error("surface", "false names nothing: give face, from and to, circle, or true", report);
+            let message = "E0514: `false` selects no surface for the drain. Set `surface = true`, or replace the \
+                           key by `face`, `circle`, or `from` and `to`.";
+            record.error("surface", message, report);
             return None;
         }
         // What is wrong with it in space is told there.
@@ -340,10 +387,13 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
     }
     if record.gives("seepage") {
         if !record.flag("seepage")? {
-            record.error("seepage", "false says nothing: give true, or leave it out", report);
+            let message =
+                "E0514: `false` has no effect here. Set `seepage = true` for a seepage face, or remove the key.";
+            record.error("seepage", message, report);
         }
         if record.gives("face") {
-            let message = "a face of the grid lets water both ways: name the surface of the body there by from and to";
+            let message = "E0515: a face of the grid cannot be a seepage face, because water passes it in both \
+                           directions. Replace `face` by `from` and `to` on the body's surface.";
             record.error("seepage", message, report);
         }
         return Some(Given::Seepage);
@@ -364,10 +414,11 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
     let (at, side) = ([grid.lower(), grid.upper()][usize::from(face.upper)][face.axis], usize::from(face.upper));
     if !ground.permeable().iter().any(|body| (body.region.corners()[side][face.axis] - at).abs() <= slack) {
         let message = format!(
-            "no body of permeable soil lies at the face, which is at {} = {at}: give surface = true, or from and to",
+            "E0516: no body with pore-water flow lies at this face ({} = {at} m). Choose another face, or give the \
+             surface of the soil by `from` and `to` (3-D: `rectangle`).",
             ["x", "y", "z"][face.axis]
         );
-        record.error("face", message, report);
+        record.consequence("face", message, PERMEABLE, report);
         return None;
     }
     Some(face)
@@ -390,11 +441,13 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     let shift = |at: [f64; 2]| [0, 1].map(|axis| lower[axis] + at[axis]);
     let pieces: Vec<[[f64; 2]; 2]> = pieces.into_iter().map(|piece| piece.map(shift)).collect();
     if pieces.is_empty() {
-        record.error("surface", "no body of permeable soil has a surface that nothing holds", report);
+        let message = "E0517: no soil with pore-water flow has a free surface; all of it lies at restrained faces \
+                       of the grid. Give the drain a `face`, or `from` and `to`.";
+        record.consequence("surface", message, PERMEABLE, report);
         return None;
     }
     let long: f64 = pieces.iter().map(|[p, q]| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
-    let reason = "what is surface of permeable soil as it begins to act; what spills there later is closed";
+    let reason = "free surface of permeable soil when the drain begins to act; surface that forms later is not drained";
     report.note(record.path_of("surface"), format!("{long:.6} m in {} pieces", pieces.len()), reason);
     Some(pieces)
 }
@@ -448,7 +501,9 @@ pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) 
     if found.is_none() {
         let names = || drains.iter().filter_map(|drain| drain.text("name"));
         let near = record.text("drain").map(|name| hint(name, names())).unwrap_or_default();
-        record.error(key, format!("there is no such [[drain]]{near}"), report);
+        let end = if near.is_empty() { "." } else { &near };
+        let message = format!("E0518: the case has no such [[drain]]. Correct its name or face, or add the drain{end}");
+        record.consequence(key, message, &["drain"], report);
         return None;
     }
     Some(found)

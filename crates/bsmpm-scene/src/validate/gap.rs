@@ -63,6 +63,11 @@ fn is_near(a: &[[f64; 3]; 2], b: &[[f64; 3]; 2], reach: f64) -> bool {
     (0..3).all(|axis| a[0][axis].max(b[0][axis]) - a[1][axis].min(b[1][axis]) <= reach)
 }
 
+/// Whether two bodies near each other are apart by a cell or more, as far as that is known.
+pub(super) fn are_apart(case: &Case, bodies: [usize; 2], work: &mut usize) -> bool {
+    gap(case, bodies, work).is_some_and(|gap| gap.distance >= gap.cell)
+}
+
 /// The gap of two bodies near each other; of shapes in space that are no cuboids, and of shapes whose edges are too
 /// many, none.
 fn gap(case: &Case, bodies: [usize; 2], work: &mut usize) -> Option<Gap> {

@@ -18,6 +18,7 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &
     // The rest is checked without it, too.
     let order = grid.word("degree").unwrap_or(Order::Quadratic).degree();
     let dims = root.word::<Geometry>("geometry")?.dims();
+    corners(grid, dims, report)?;
     let (axes, lines) = if grid.gives("knots") {
         graded(grid, order, dims, report)?
     } else {
@@ -36,6 +37,23 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &
     bounded(&spec, grid, report)?;
     warn_of_rounding(&spec, report);
     Some(spec)
+}
+
+/// An error for corners in the wrong order, whatever the cells are.
+fn corners(grid: &Record, dims: usize, report: &mut Report<'_>) -> Option<()> {
+    let (Some(lower), Some(upper)) = (grid.vector("lower"), grid.vector("upper")) else { return Some(()) };
+    let wrong: Vec<&str> = (0..dims).filter(|&axis| upper[axis] <= lower[axis]).map(|axis| NAMES[axis]).collect();
+    if wrong.is_empty() {
+        return Some(());
+    }
+    let message = format!(
+        "E0203: the upper corner {:?} m is not above the lower corner {:?} m along {}. Exchange or correct the corners.",
+        &upper[..dims],
+        &lower[..dims],
+        wrong.join(" and ")
+    );
+    grid.error("upper", message, report);
+    None
 }
 
 /// An error for breakpoints that are next to one when counted from the first.
@@ -131,15 +149,6 @@ fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut
         _ => return None,
     };
     let mut axis = |number: usize| {
-        if upper[number] <= lower[number] {
-            let message = format!(
-                "E0203: the upper end along {}, {} m, is not above the lower end, {} m. Exchange or correct the \
-                 corners.",
-                NAMES[number], upper[number], lower[number]
-            );
-            grid.error("upper", message, report);
-            return None;
-        }
         Faces { grid, number, supports: boundary[number] }.cells(lower[number], upper[number], cell[number], report)
     };
     let read: Vec<Option<GridAxis>> = (0..dims).map(&mut axis).collect();

@@ -77,7 +77,7 @@ fn read(
     if measured.is_of_footing() && !root.gives("footing") {
         let message =
             format!("E0646: the quantity \"{measured}\" needs a [footing], and the case has none. Add [footing].");
-        record.error("quantity", message, report);
+        record.consequence("quantity", message, &["footing"], report);
     }
     if measured.is_of_flow() && !flow::flows(root) {
         record.error("quantity", needs_flow(measured.word()), report);
@@ -101,7 +101,7 @@ fn read(
             "E0646: nothing supports the boundary `{side}`, so its reaction is always 0. Name another `face`, or set \
              boundary.{side}."
         );
-        record.error("face", message, report);
+        record.consequence("face", message, &["boundary", "prescribed", "stage"], report);
     }
     let is_outlet = |side: Side| supports(root, side).contains(&Support::Outflow);
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
@@ -129,7 +129,7 @@ fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut
     let Some(number) = strips.iter().position(|(_, name, _)| *name == wanted) else {
         let names = strips.iter().map(|(_, name, _)| *name);
         let message = unknown_name("[[prescribed]] or [footing]", wanted, names);
-        record.error("of", message, report);
+        record.consequence("of", message, &["footing", "prescribed"], report);
         return None;
     };
     let (strip, _, key) = strips[number];
@@ -139,7 +139,7 @@ fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut
              to it.",
             strip.path
         );
-        record.error("of", message, report);
+        record.consequence("of", message, &[&strip.path], report);
         return None;
     }
     Some(number)
@@ -306,7 +306,7 @@ fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usiz
     let names = || root.records("rigid").iter().filter_map(|rigid| rigid.text("name"));
     let found = names().position(|known| known == name);
     if found.is_none() {
-        record.error("rigid", unknown_name("[[rigid]]", name, names()), report);
+        record.consequence("rigid", unknown_name("[[rigid]]", name, names()), &["rigid"], report);
     }
     found
 }
@@ -348,7 +348,7 @@ fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usi
     let found = bodies.iter().position(|body| body.name.as_deref() == Some(name));
     if found.is_none() {
         let names = bodies.iter().filter_map(|body| body.name.as_deref());
-        record.error("body", unknown_name("[[body]]", name, names), report);
+        record.consequence("body", unknown_name("[[body]]", name, names), &["body"], report);
     }
     found
 }
@@ -391,7 +391,7 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
             "E0660: no [[history]] has a column `{}` ({known}). Correct the name, or add a [[history]].",
             shortened(quantity)
         );
-        record.error("quantity", message, report);
+        record.consequence("quantity", message, &["history"], report);
         return None;
     };
     let at = if record.gives("at") { record.number("at")? } else { end? };

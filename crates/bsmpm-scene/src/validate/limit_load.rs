@@ -157,7 +157,7 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
     }
     if let Some(name) = inside_cells.first() {
         let message = format!(
-            "E0448: {name} ends inside a cell, so its limit load cannot be extrapolated to finer grids. Put a grid line there with \
+            "E0448: `{name}` ends inside a cell, so its limit load cannot be extrapolated to finer grids. Put a grid line there with \
              grid.cell or [grid.knots]."
         );
         analysis.error(KEY, message, report);

@@ -42,7 +42,7 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         let plate = plate(record, grid, report)?;
         let mut places = places(Site::Plate(plate), grid).into_iter();
         if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
-            record.error(key, no_body(&at), report);
+            record.consequence(key, no_body(&at), &["body"], report);
             return None;
         }
         return Some(LoadedLine::Plate(plate));
@@ -110,7 +110,7 @@ pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut R
         if let Some(message) = is_beyond(grid, at) {
             record.error("at", message, report);
         } else if !is_at(bodies, grid, at) {
-            record.error("at", no_body(&at[..grid.dims()]), report);
+            record.consequence("at", no_body(&at[..grid.dims()]), &["body"], report);
         }
         let (force, (ramp, amplitude)) = force?;
         let key = if record.gives("force_path") { "force_path" } else { "force" };
@@ -161,7 +161,7 @@ fn acts_on_body(
 ) {
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
     if let Some(at) = places.find(|at| !at_body(bodies, grid, *at)) {
-        record.error(key, no_body(&at), report);
+        record.consequence(key, no_body(&at), &["body"], report);
     }
 }
 
@@ -239,7 +239,7 @@ fn coarse(path: &str, times: impl Iterator<Item = f64> + Clone, dt: Option<f64>,
 /// Says that the first number of a row, called `name`, is not larger than that of the row before.
 pub(super) fn not_increasing(name: &str, value: f64, before: f64) -> String {
     format!(
-        "E0402: {name} = {value} in this row is not larger than {before} in the row before. Sort the rows, each value once."
+        "E0402: {name} = {value} in this row is not larger than {before} in the row before. Sort the rows, and delete repeated ones."
     )
 }
 

@@ -58,7 +58,7 @@ pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report
     let named = root.named("material");
     if root.gives("material") && named.is_empty() {
         let message = "E0301: the case has no material. Add a table [material.NAME] for each soil.";
-        root.error("material", message, report);
+        root.consequence("material", message, &["material"], report);
     }
     if named.len() > MOST {
         let message = format!(
@@ -223,7 +223,8 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
     };
     if !(100.0..=30_000.0).contains(&density) {
         report.warn(format!(
-            "{}: a density of {density:.6} kg/m3 (unit weight {:.6} kN/m3) is unusual: check the unit",
+            "W0108: {}: {density:.3} kg/m3, a unit weight of {:.3} kN/m3, is not that of soil or rock (5 to 30 kN/m3). Check \
+             the unit, and write it: unit_weight = \"20 kN/m3\".",
             record.path,
             density * STANDARD_GRAVITY * 1e-3
         ));
@@ -278,7 +279,9 @@ const STIFF: f64 = 0.4999;
 const STIFF_TO_FLOW: f64 = 0.499;
 
 fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {
-    if let Some(young) = young.filter(|young| !(1e3..=1e12).contains(young)) {
+    // Without a unit it is looked at with the stresses of the case.
+    let least = if record.has_unit("young") { 1e3 } else { 0.0 };
+    if let Some(young) = young.filter(|young| !(least..=1e12).contains(young)) {
         report.warn(format!(
             "W0302: {}: Young's modulus is {} kPa; usual are 1 kPa to 1000 GPa. Check the unit of `young`.",
             record.path,

@@ -120,15 +120,17 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
 
 /// A quasi-static body that nothing holds against a translation has no equilibrium: the stiffness is singular.
 fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
-    for (component, name) in ["x", "y", "z"].into_iter().enumerate().take(case.grid.dims()) {
-        if !holds(case, component) {
-            let message = format!(
-                "nothing holds the bodies along {name}: no fixed face, roller or face in contact that a body reaches prescribes \
-                 it, nor does a strip or a rigid body that a body is at, and a quasi-static analysis is singular then"
-            );
-            report.error(record.place("boundary"), "boundary", message);
-        }
+    let free: Vec<&str> =
+        (0..case.grid.dims()).filter(|&axis| !holds(case, axis)).map(|axis| ["x", "y", "z"][axis]).collect();
+    if free.is_empty() {
+        return;
     }
+    let message = format!(
+        "E0270: no support holds the bodies along {}, and a quasi-static analysis has no solution. Set a side of [boundary] \
+         that a body reaches to \"fixed\" or \"roller\".",
+        free.join(" and ")
+    );
+    report.error(record.place("boundary"), "boundary", message);
 }
 
 /// Faces that absorb hold nothing but what `[initial]` has found there; beside ground that shakes they would hold back.

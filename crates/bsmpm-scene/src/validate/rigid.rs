@@ -5,9 +5,8 @@ mod solid;
 
 use super::site::{AroundStrip, normal};
 use super::strip;
-use super::{MOST_SHOWN_FRICTION, load, place, shape};
+use super::{MOST_SHOWN_FRICTION, NO_INERTIA, load, place, shape};
 use crate::case::{Acting, Case, Initial, MotionPath, Rigid, RigidShape, Stage, Support};
-use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces;
@@ -95,13 +94,8 @@ fn free(record: &Record, report: &mut Report<'_>) -> Option<[bool; 3]> {
     }
     for name in record.names("free")? {
         let Some(motion) = RigidMotion::of(name) else {
-            let words = || RigidMotion::WORDS.words();
-            let allowed: Vec<&str> = words().collect();
-            let message = format!(
-                "E0422: `{name}` is not a motion of a rigid body. Use {}{}.",
-                allowed.join(", "),
-                hint(name, words())
-            );
+            let allowed: Vec<&str> = RigidMotion::WORDS.words().collect();
+            let message = format!("E0422: `{name}` is not a motion of a rigid body. Use {}.", allowed.join(", "));
             record.error("free", message, report);
             return None;
         };
@@ -231,8 +225,7 @@ fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, repor
     }
     for key in ["start_velocity", "start_spin"] {
         if record.gives(key) && regime == Some(Regime::QuasiStatic) {
-            let message = "E0429: a quasi-static analysis has no velocities. Delete this key, or use analysis.type = \"dynamic\".";
-            record.error(key, message, report);
+            record.error(key, NO_INERTIA, report);
         }
     }
 }

@@ -45,7 +45,7 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
         }
         None => Ok(all),
     };
-    found.and_then(at_bodies).map_err(|message| record.error(key, message, report)).ok().map(Arc::from)
+    found.and_then(at_bodies).map_err(|message| record.consequence(key, message, &["body"], report)).ok().map(Arc::from)
 }
 
 /// Whether an area, m², is not too large for the spacing of points, m.

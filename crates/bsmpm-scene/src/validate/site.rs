@@ -49,7 +49,7 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
         let message =
             format!("E0233: no body lies at {from:.3?} to {to:.3?} at the start. Move it to the surface of a body.");
-        record.error(key, message, report);
+        record.consequence(key, message, &["body"], report);
     }
 }
 

@@ -12,6 +12,8 @@ use crate::words::{Geometry, Side, Word};
 
 /// Parts of a step by which stages must lie apart: a step ends at each.
 const APART: f64 = 1e-6;
+/// Keys of what a stage may apply or release.
+const MAY_ACT: &[&str] = &["drain", "footing", "inflow", "point_load", "prescribed", "rigid", "traction"];
 
 /// All stages in the order of the file, which must be that of time; `time` is the end of the run and the nominal step.
 pub(super) fn read_all(
@@ -138,7 +140,8 @@ fn named<T: Copy>(
             record.error(key, message, report);
         }
         if found.is_none() {
-            record.error(key, unknown_name(kind, name, known.iter().map(|(name, _)| *name)), report);
+            let message = unknown_name(kind, name, known.iter().map(|(name, _)| *name));
+            record.consequence(key, message, if bodies { &["body"] } else { MAY_ACT }, report);
         }
         found
     };
@@ -191,7 +194,7 @@ fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<
             let found = materials.iter().position(|(other, _)| other == name);
             if found.is_none() {
                 let names = materials.iter().map(|(name, _)| name.as_str());
-                pair.error(key, unknown_name("material", name, names), report);
+                pair.consequence(key, unknown_name("material", name, names), &["material"], report);
             }
             found
         };

@@ -213,11 +213,11 @@ pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
         let (name, history) = (name_of_strip(case, number), &history.name);
         report.warn(match support {
             Support::Roller => format!(
-                "W0407: {name} is inclined and ends at the roller boundary `{side}`, which carries a part of its force. That part \
+                "W0407: `{name}` is inclined and ends at the roller boundary `{side}`, which carries a part of its force. That part \
                  is missing in history `{history}`. Use the component along `{side}`."
             ),
             _ => format!(
-                "W0408: {name} ends at the fixed boundary `{side}`, which carries a part of its force. That part is missing in \
+                "W0408: `{name}` ends at the fixed boundary `{side}`, which carries a part of its force. That part is missing in \
                  history `{history}`. Use boundary.{side} = \"roller\"."
             ),
         });

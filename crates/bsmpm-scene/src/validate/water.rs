@@ -26,15 +26,17 @@ pub(super) fn read(
     let Some(record) = root.record("water") else {
         for (_, material) in root.named("material") {
             if material.gives("saturated_unit_weight") {
-                material.error("saturated_unit_weight", "has no meaning without [water]", report);
+                let message = "E0520: a saturated unit weight has no effect without a water table. Give \
+                               `water.level`, or remove the key.";
+                material.error("saturated_unit_weight", message, report);
             }
         }
         return None;
     };
     if ["level", "level_path", "line", "line_path"].iter().all(|key| !record.gives(key)) {
         if !super::flow::flows(root) {
-            let message =
-                "missing: one of level, level_path, line, line_path: no water flows, and there is none that is still";
+            let message = "E0521: [water] has no water table, and no material has pore-water flow. Give one of \
+                           `level`, `level_path`, `line` and `line_path`, or remove [water].";
             report.error(record.origin, &record.path, message);
         }
         return None;
@@ -42,19 +44,30 @@ pub(super) fn read(
     let table = table(record, (grid?, end), report)?;
     let given = record.number("unit_weight")?;
     if !root.gives("gravity") {
-        report.error(record.origin, &record.path, "water weighs nothing without [gravity]");
+        let message = "E0522: hydrostatic pressure requires gravity, and the case has none. Add [gravity], or \
+                       remove the water table.";
+        report.error(record.origin, &record.path, message);
     }
     let (acceleration, axes) = (gravity?.acceleration, grid?.dims());
     if !gravity?.acts_down(axes, regime) {
-        let message = format!("{:?} is not straight down, which still water needs", &acceleration[..axes]);
+        let message = format!(
+            "E0523: {:?} m/s2 is not vertically downwards, as a hydrostatic pore pressure requires. Give a negative {} \
+             component only.",
+            &acceleration[..axes],
+            ["x", "y", "z"][axes - 1]
+        );
         root.record("gravity")?.error("acceleration", message, report);
     }
     if !(8_000.0..=12_000.0).contains(&given) {
-        report.warn(format!("{}: {given} N/m3 is unusual for water: check the unit", record.path_of("unit_weight")));
+        report.warn(format!(
+            "W0520: {}: {given} N/m3 is unusual for water (8000 to 12000 N/m3), and pore pressures are \
+             proportional to it. Check the unit.",
+            record.path_of("unit_weight")
+        ));
     }
     let unit_weight = given / STANDARD_GRAVITY * acceleration[axes - 1].abs();
     if unit_weight != given {
-        let reason = format!("{given} N/m3 is that under 9.81 m/s2, as of materials");
+        let reason = format!("{given} N/m3 applies to 9.81 m/s2, and is scaled to the gravity of this case");
         report.note(record.path_of("unit_weight"), format!("{unit_weight}"), reason);
     }
     Some(Water { unit_weight, table })
@@ -75,14 +88,18 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
     let heights = || table.levels().into_iter().flatten();
     if !record.gives("suction") && heights().all(|row| row.1 <= base) {
         let message = format!(
-            "the water table is nowhere above the grid's lower face, {axis} = {base}: leave [water] out, or give \
-                     it a `suction`, which ground has above a table that is below it"
+            "E0524: the water table is nowhere above the bottom of the grid ({axis} = {base} m), so it has no \
+             effect. Raise it, remove [water], or give `suction` for unsaturated soil."
         );
         record.error(key, message, report);
         return None;
     }
     if let Some((t, _)) = heights().find(|(t, _)| end.is_some_and(|end| *t > end)) {
-        report.warn(format!("{}: the row at t = {t} is beyond the end of the run", record.path_of(key)));
+        report.warn(format!(
+            "W0521: {}: the row at t = {t} s is after the end of the run, which does not reach it. Increase \
+             `analysis.end`, or remove the row.",
+            record.path_of(key)
+        ));
     }
     steep((&table, grid), (record, key), report);
     Some(table)
@@ -97,11 +114,24 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
         let [t, x, y] = [0, 1, 2].map(|k| row.numbers[k]);
         let at = number % count;
         let wrong = if number < count {
-            (at > 0 && places[at - 1].x >= x).then(|| format!("x = {x} is not above that of the row before"))
+            let message = || {
+                format!(
+                    "E0525: x = {x} m is not greater than x of the row before. List the points of the line with x \
+                     increasing."
+                )
+            };
+            (at > 0 && places[at - 1].x >= x).then(message)
         } else if places[at].x != x || (at > 0 && rows[number - 1].numbers[0] != t) {
-            Some(format!("t = {t}, x = {x}: the places of a time are those of the first, in their order"))
+            Some(format!(
+                "E0525: at t = {t} s the line has a point x = {x} m that differs from the line of the first time. \
+                 Repeat the same x, in the same order, at each time."
+            ))
         } else if at == 0 && rows[number - 1].numbers[0] >= t {
-            Some(format!("t = {t} is not above {}, that of the line before", rows[number - 1].numbers[0]))
+            Some(format!(
+                "E0525: t = {t} s is not greater than the time of the line before, {} s. List the lines with t \
+                 increasing.",
+                rows[number - 1].numbers[0]
+            ))
         } else {
             None
         };
@@ -115,7 +145,9 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
         places[at].rows.push((t, y));
     }
     if places.is_empty() || places.iter().any(|place| place.rows.len() != places[0].rows.len()) {
-        record.error(key, "it needs at least one line, and every line all places", report);
+        let message = "E0525: a line has fewer points than the line of the first time. Repeat the same x, in the same \
+                       order, at each time.";
+        record.error(key, message, report);
         return None;
     }
     Some(places)
@@ -134,15 +166,15 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
     if let Some(step) = places.windows(2).find(is_step) {
         let [from, to] = [step[0].x, step[1].x];
         report.warn(format!(
-            "{key}: its step from x = {from} to {to} is narrower than a cell, {cell}: the water's thrust acts on what points lie \
-             there, and is too small or none where they lie beside it; let the line fall over a cell or more"
+            "W0522: {key}: the drop from x = {from} to {to} m is narrower than a cell ({cell} m), so the soil \
+             receives too little thrust. Extend the drop over at least one cell."
         ));
     }
     let steepest = places.windows(2).filter(|pair| !is_step(pair)).map(slope).fold(0.0, f64::max);
     if steepest > GENTLE {
         report.warn(format!(
-            "{key}: a slope of {steepest:.3}: the pressure is that of the depth straight below the line; where water flows along \
-             it, it is less, by {:.0} % there, and factors of safety are on the safe side",
+            "W0523: {key}: its slope is {steepest:.3} (limit {GENTLE}): if water flows along it, pore pressures \
+             are {:.0} % too high. Accept it as conservative, or compute the flow with `drainage = \"coupled\"`.",
             100.0 * steepest * steepest / (1.0 + steepest * steepest)
         ));
     }
@@ -152,13 +184,13 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
-        let message =
-            "the pressure of still water does not follow ground that shakes: [shaking] cannot be used with [water]";
+        let message = "E0526: [water] and [shaking] cannot be combined, because pore pressures would not follow \
+                       the shaking. Remove [water], and use undrained strengths.";
         report.error(written.origin, &written.path, message);
     }
     for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
         if matches!(support, Support::Absorbing | Support::FreeField) {
-            let message = "with [water]: what absorbs was not shown to be right beside water: use \"roller\"";
+            let message = format!("E0527: \"{support}\" is not available together with [water]. Use \"roller\".");
             let side = side.word();
             report.error(record.place("boundary"), &format!("boundary.{side}"), message);
         }
@@ -170,17 +202,20 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let up = case.grid.dims() - 1;
     let low = case.bodies.iter().map(|body| body.region.corners()[0][up]).fold(f64::INFINITY, f64::min);
     if highest <= low && !written.gives("suction") {
-        report.warn("water: the water table is below all bodies: it does nothing");
+        report.warn(format!(
+            "W0524: water: the water table (up to {highest} m) is below all bodies (from {low} m) and has no \
+             effect. Raise it, or remove [water]."
+        ));
     }
     if !case.tractions.is_empty() || !case.point_loads.is_empty() {
-        let reason = "the water presses on wet surfaces by itself; loads are what acts besides";
-        report.note("water", "loads besides", reason);
+        let reason = "water pressure on submerged surfaces is applied automatically; do not include it in the loads";
+        report.note("water", "in addition to loads", reason);
     }
     let wets = |body: &usize| case.materials[case.bodies[*body].material].saturated.is_some();
     if water.table.moves() && case.stages.iter().any(|stage| stage.add.iter().any(wets)) {
         report.warn(
-            "water: bodies that a stage places weigh saturated_unit_weight below the level at time 0, wherever it \
-             is when they come",
+            "W0525: water: bodies added by a stage have the saturated weight below the water level of time 0, \
+             although the level moves. Give them a material with the weight that suits their stage.",
         );
     }
 }
@@ -195,11 +230,12 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
     let up = case.grid.dims() - 1;
     let highest = water.table.levels().into_iter().flatten().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
     let is_wet = |body: &Body| body.region.corners()[0][up] < highest;
-    for (number, (name, written)) in record.named("material").iter().enumerate() {
+    for (number, (_, written)) in record.named("material").iter().enumerate() {
         if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number && is_wet(body))
         {
             let message = format!(
-                "missing or too little: material.{name} is lighter than water, {:.6} kN/m3, and would float where it lies below the table",
+                "E0528: the soil below the water table has no weight, or is lighter than water ({:.2} kN/m3), and \
+                 would float. Set `saturated_unit_weight`, for example to \"20 kN/m3\".",
                 water.unit_weight * 1e-3
             );
             let key = ["saturated_unit_weight", "unit_weight", "density"].into_iter().find(|key| written.gives(key));

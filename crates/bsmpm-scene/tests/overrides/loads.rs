@@ -50,7 +50,7 @@ fn what_lies_on_the_ground_has_no_part_in_the_stress_at_the_start() {
 fn strips_hold_and_load_a_quasi_static_body() {
     let free = STATIC.replace("bottom = \"fixed\"\n", "");
     let errors = set(&free, &["traction.0={from=[0, 1], to=[2, 1], stress=[0, -1]}"]).unwrap_err();
-    assert_eq!(errors.len(), 2, "along x and y: {errors:?}");
+    assert!(errors.len() == 1 && errors[0].message.contains("along x and y"), "{errors:?}");
     let strip = |more: &str| format!("prescribed.0={{from=[0, 1], to=[2, 1], displacement=[0, -0.1]{more}}}");
     assert!(valid(&free, &[&strip("")]).warnings.is_empty());
     let errors = set(&free, &[&strip(", components=\"normal\"")]).unwrap_err();
@@ -86,11 +86,14 @@ fn large_loads_on_little_background_are_warned_of() {
     let case = include_str!("../../../../cases/validation/large_consolidation.toml");
     let warned = |set: &[&str]| {
         let warnings = valid(case, set).warnings;
-        warnings.iter().filter(|warning| warning.starts_with("solver.background: ")).cloned().collect::<Vec<_>>()
+        warnings.iter().filter(|warning| warning.contains(": solver.background: ")).cloned().collect::<Vec<_>>()
     };
     let off = "solver.extension=off";
     let found = warned(&["solver.background=1e-4", off]);
-    assert!(found.len() == 1 && found[0].contains("a load of 0.50") && found[0].contains("with 1e-2"), "{found:?}");
+    assert!(
+        found.len() == 1 && found[0].contains("a load of 0.50") && found[0].contains("background = 0.01"),
+        "{found:?}"
+    );
     assert!(warned(&[]).is_empty());
     assert!(warned(&["solver.background=1e-4", off, "traction.0.stress=[0.0, \"-50 kPa\"]"]).is_empty());
 }
@@ -116,8 +119,8 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
     assert!((largest - 11e3).abs() < 1e-9, "at its lowest place: {largest}");
     for (traction, reported) in [
         ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "E0252"),
-        ("circle = { centre = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "no part of it is inside the grid"),
-        ("circle = { centre = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "no body is at"),
+        ("circle = { centre = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "E0201"),
+        ("circle = { centre = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "E0401"),
         ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "E0016"),
         ("from = [0.0, 1.25], circle = { centre = [0.5, 2.0], radius = 0.4 }, pressure = 1e3", "E0016"),
         ("from = [0.0, 1.25], to = [1.0, 1.25]", "none of the keys stress, pressure"),
@@ -407,7 +410,7 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
     let wall = "from=[0, 0], to=[0, 1]";
     let fixed = warned(wall, &[]);
     assert!(
-        fixed.len() == 1 && fixed[0].contains("W0408: prescribed.0 ends at the fixed boundary `bottom`"),
+        fixed.len() == 1 && fixed[0].contains("W0408: `prescribed.0` ends at the fixed boundary `bottom`"),
         "{fixed:?}"
     );
     assert!(warned(wall, &["boundary.bottom=roller", "boundary.right=roller"]).is_empty());
@@ -418,7 +421,7 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
     let inclined = warned("from=[0, 1.4], to=[1, 1.2]", &cone);
     assert!(
         inclined.len() == 1
-            && inclined[0].contains("W0407: prescribed.0 is inclined and ends at the roller boundary `left`"),
+            && inclined[0].contains("W0407: `prescribed.0` is inclined and ends at the roller boundary `left`"),
         "{inclined:?}"
     );
     assert!(warned("from=[0.5, 1.3], to=[1.5, 1.1]", &cone).is_empty());

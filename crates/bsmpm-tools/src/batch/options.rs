@@ -13,31 +13,29 @@ use crate::{Error, case};
 /// How the runs are made, and where they are written.
 #[derive(Clone, Debug, Args)]
 pub struct Options {
-    /// Runs at the same time [default: the cores, divided by the ranks]
+    /// Number of runs at the same time [default: the cores, divided by the ranks]
     #[arg(long, value_name = "N")]
     pub jobs: Option<usize>,
-    /// Ranks of each run, started by mpirun
+    /// Number of MPI ranks of each run, started by mpirun
     #[arg(long, value_name = "R", default_value_t = 1, value_parser = ranks, conflicts_with = "command")]
     pub ranks: usize,
-    /// What the runs at the same time may take together, by their estimates, e.g. 16GiB [default: what the machine has
-    /// free]
+    /// Memory that simultaneous runs may use together by their estimates, e.g. 16GiB [default: the free memory]
     #[arg(long, value_name = "SIZE", value_parser = disk::size)]
     pub max_memory: Option<u64>,
-    /// Stop each run after so much time by the clock; asked for again it goes on
+    /// Stop each run after this wall time; the same command continues it later
     #[arg(long, value_name = "HH:MM:SS", value_parser = wall)]
     pub max_wall: Option<Duration>,
     /// Override one key of the case in all runs, as for bsmpm-par; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Where everything is written [default: the case's stem and an ending that names the command, in the
-    /// working directory]
+    /// Output directory [default: name of the case with an ending for the command, in the working directory]
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Repeat runs that are there already
+    /// Repeat runs that are complete already
     #[arg(long)]
     pub force: bool,
-    /// The solver, with the launcher before it: words that bsmpm-par's arguments follow [default: the bsmpm-par beside
-    /// this program, or that of PATH]
+    /// Command that starts the solver, with a launcher if there is one [default: bsmpm-par next to this program or in
+    /// PATH]
     #[arg(last = true, value_name = "COMMAND")]
     pub command: Vec<String>,
 }
@@ -72,7 +70,10 @@ impl Options {
 }
 
 fn ranks(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|ranks| (1..=100_000).contains(ranks)).ok_or_else(|| "a number from 1 on".to_owned())
+    text.parse()
+        .ok()
+        .filter(|ranks| (1..=100_000).contains(ranks))
+        .ok_or_else(|| "expected a number from 1 to 100000".to_owned())
 }
 
 /// HH:MM:SS
@@ -83,7 +84,7 @@ fn wall(text: &str) -> Result<Duration, String> {
         Some(&[hours, minutes, seconds]) if minutes < 60 && seconds < 60 && hours + minutes + seconds > 0 => {
             Ok(Duration::from_secs(3600 * hours + 60 * minutes + seconds))
         }
-        _ => Err(format!("{text} is no time; expected HH:MM:SS")),
+        _ => Err("expected a duration HH:MM:SS".to_owned()),
     }
 }
 

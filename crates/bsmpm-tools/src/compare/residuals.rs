@@ -66,13 +66,20 @@ pub(super) fn run(arguments: &CompareArguments, step: u64) -> Result<ComparedFil
 
 impl ResidualCourse {
     fn read(label: String, record: &RunRecord, step: u64) -> Result<Self, Error> {
-        let missing = |what: String| Error::Missing { reason: format!("{} holds {what}", record.directory.display()) };
+        let directory = record.directory.display();
+        let missing = |reason: String| Error::Missing { reason };
         let all = present(residuals::read(&record.directory.join(RESIDUALS)))?;
-        let all = all.ok_or_else(|| missing("no residuals.csv: [output] residuals = true writes it".to_owned()))?;
+        let all = all.ok_or_else(|| {
+            missing(format!(
+                "E0806: {directory} has no residuals.csv. Set `output.residuals = true`, and run the case again."
+            ))
+        })?;
         let last = all.last().map_or(0, |iterate| iterate.step);
         let iterates: Vec<Iterate> = all.into_iter().filter(|iterate| iterate.step == step).collect();
         if iterates.is_empty() {
-            return Err(missing(format!("no iteration of step {step} in residuals.csv, whose last step is {last}")));
+            return Err(missing(format!(
+                "E0806: residuals.csv of {directory} has no step {step}; its last step is {last}. Give another step."
+            )));
         }
         let case = bsmpm_scene::Case::from_text("case", &record.manifest.case.text, &[]).ok();
         let tolerances = case.map(|case| [case.solver.tolerance, case.solver.force_tolerance]);

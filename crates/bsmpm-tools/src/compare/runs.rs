@@ -85,7 +85,8 @@ fn fits(option: &str, given: usize, runs: usize) -> Result<(), Error> {
     if given == 0 || given == runs {
         return Ok(());
     }
-    let reason = format!("{option} is given {given} times for {runs} directories; it is needed once for each");
+    let reason =
+        format!("E0805: {option} is given {given} times for {runs} runs. Give it once for each run, or not at all.");
     Err(Error::Usage { reason })
 }
 
@@ -94,8 +95,9 @@ fn column<'a>(record: &'a RunRecord, name: &str) -> Result<Recorded<'a>, Error> 
     let directory = record.directory.display();
     let missing = |reason| Error::Missing { reason };
     let history = record.history.as_ref().filter(|history| history.values.iter().any(|values| !values.is_empty()));
-    let history =
-        history.ok_or_else(|| missing(format!("the run in {directory} has left no row of history.csv yet")))?;
+    let history = history.ok_or_else(|| {
+        missing(format!("E0803: history.csv of {directory} has no rows yet. Wait for the run's first output."))
+    })?;
     if let Some(column) = record.column(name) {
         return Ok(column);
     }
@@ -103,7 +105,10 @@ fn column<'a>(record: &'a RunRecord, name: &str) -> Result<Recorded<'a>, Error> 
         [only] => Ok(only),
         _ => {
             let known: Vec<_> = history.headings.iter().map(|heading| heading.name.as_str()).collect();
-            Err(missing(format!("history.csv of {directory} has no column \"{name}\"; it has {}", known.join(", "))))
+            Err(missing(format!(
+                "E0803: history.csv of {directory} has no column `{name}`. Choose one of: {}.",
+                known.join(", ")
+            )))
         }
     }
 }
@@ -123,8 +128,8 @@ fn axis(
         let (name, unit) = (first.name, first.unit);
         let (here, there) = (records[0].directory.display(), record.directory.display());
         let reason = format!(
-            "the column \"{name}\" is in \"{unit}\" in {here}, \"{}\" in \"{}\" in {there}; a label of the axis makes them \
-             one",
+            "E0804: `{name}` has the unit {unit} in {here}, but `{}` has {} in {there}. Choose another column, or give an axis \
+             label (--x-label, --y-label).",
             other.name, other.unit
         );
         return Err(Error::Usage { reason });

@@ -18,55 +18,68 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
     let reasons = [
         (
             case.analysis.regime == Regime::Dynamic,
-            "analysis.type = \"dynamic\": strength reduction looks for equilibrium; it needs a quasi-static analysis",
+            "E0810: strength reduction searches for static equilibrium, but the analysis is dynamic. Set \
+             `analysis.type = \"quasi-static\"`.",
         ),
         (
             any(Material::hardens),
-            "a material hardens: its strength grows as it is strained, and the factor would be that of the displacement that is \
-             looked at; hardening = 0, or no residual strength above the first one, gives one",
+            "E0811: a material hardens, so the factor would depend on the displacement at which it is read. Set \
+             `hardening = 0`, or reduce the residual strength to the peak.",
         ),
         (
             any(|material| !material.is_linear()),
-            "a material's strength follows from what has compressed it: trials begin without stress and stiffen the ground; \
-             give cam-clay's undrained strength as \"tresca\" or its critical state as \"mohr-coulomb\", from the start or \
-             by the materials of a [[stage]] before",
+            "E0812: the strength of Cam-clay depends on its stress history, which trials do not repeat. Use \
+             \"tresca\" (undrained strength) or \"mohr-coulomb\" (critical state).",
         ),
         (
             any(|material| material.softens() && material.over(1.0).is_some()),
-            "a material's strength grows with the rate of shear, and trials have no time: leave rate_parameter and \
-             reference_rate out, and give the strength of the rate that is meant",
+            "E0813: a strength depends on the shear rate, but trials have no physical time. Remove \
+             `rate_parameter` and `reference_rate`, and give the strength at the relevant rate.",
         ),
         (
             until.is_none() && !case.stages.is_empty(),
-            "it has stages, of which each has a factor of its own: give --stage NAME, at whose end it is wanted, or \"end\"",
+            "E0814: the case has stages, and each stage has its own factor of safety. Choose one by `--stage \
+             NAME`, or the last by `--stage end`.",
         ),
         (
             case.stages.iter().any(|stage| stage.strength_reduction.is_some()),
-            "the case divides the strength itself, at the end of a stage or in one: leave that out, as the search does so",
+            "E0815: a stage of the case reduces the strength, as the search itself does. Remove its \
+             `strength_reduction`.",
         ),
-        (!has_strength, "no material is plastic and no contact has friction: there is no strength to be reduced"),
-        (!is_loaded(case), "nothing loads the body at `end`: no weight under gravity, no traction, no point load"),
+        (
+            !has_strength,
+            "E0816: no material yields and no interface has friction, so there is no strength to reduce. Use a \
+             plastic `model`, for example \"mohr-coulomb\".",
+        ),
+        (
+            !is_loaded(case),
+            "E0817: no load acts at the end (weight, traction, point load, rigid body), so nothing can fail. Add \
+             [gravity] and a unit weight, or a load.",
+        ),
         (
             has_amplitude,
-            "a load follows an amplitude: its factor would be that of whatever acts at `end`; give the load that is meant, \
-             with a ramp, or --stage NAME of a stage at whose end it rests",
+            "E0818: a load varies with its `amplitude`, so the factor would belong to its last value only. Give \
+             the load with `ramp`, or choose a stage by `--stage NAME`.",
         ),
-        (never_full, "a load grows beyond `end`: it never acts in full, and the factor would be that of a part of it"),
+        (
+            never_full,
+            "E0819: a `ramp` is longer than the analysis, so the load never acts in full. Reduce `ramp`, or increase \
+             `analysis.end`.",
+        ),
         (
             until.is_none() && case.water.as_ref().is_some_and(|water| water.table.moves()),
-            "the water table moves: the factor would be that of whatever the level is as strength falls: give the level that is \
-             meant, or --stage NAME: it stays as it is at the end of that stage",
+            "E0820: the water table moves, so the factor would belong to an arbitrary level. Give `water.level`, \
+             or choose a stage by `--stage NAME`, at whose end the level stays.",
         ),
         (
             until.is_none() && case.rigid.iter().any(Rigid::is_moved),
-            "a rigid body moves on a way: what it holds changes as it goes; give --stage NAME, at whose end it is held where it \
-             is then, or leave its way out",
+            "E0821: a rigid body has a prescribed motion, which changes its support of the soil. Remove the \
+             motion, or choose a stage by `--stage NAME`, at whose end it stops.",
         ),
         (
             until.is_none() && is_moved(case),
-            "the case prescribes a motion: what moves as prescribed shows no failure, however little strength is left; give the \
-             load instead of the motion, or run the case itself and read its force against the motion, or give --stage NAME, \
-             at whose end what has moved is held where it is, as a wall is",
+            "E0822: a displacement is prescribed, so soil of any strength moves alike and never fails. Give a load \
+             instead, or choose a stage by `--stage NAME`, at whose end the motion stops.",
         ),
     ];
     let found = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason.to_owned());
@@ -94,8 +107,8 @@ fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {
     let all = [("tolerance", case.solver.tolerance), ("force_tolerance", case.solver.force_tolerance)];
     all.into_iter().filter(|(_, value)| *value > LOOSEST).map(|(key, value)| {
         format!(
-            "solver.{key} = {value:e} is too loose for a factor that means anything: at most {LOOSEST:e} (a study by finite \
-             elements found 45.6 % too much with 1e-1, 2 % with 1e-2, nothing from 1e-3 on)"
+            "E0823: solver.{key} = {value:e} is too loose (limit {LOOSEST:e}), so the factor may be too high. Set \
+             it to {LOOSEST:e} or less."
         )
     })
 }

@@ -1,5 +1,6 @@
 //! What a search found: judged trials, both factors with their bands, and the conditions; as text, CSV and JSON.
 
+use bsmpm_messages::headed;
 use serde::Serialize;
 
 use super::curve::{Bracket, DOUBLED, FactorCurve, Kink};
@@ -183,12 +184,12 @@ impl FosReport {
         if let Some(mechanism) = &self.mechanism {
             text += &format!("mechanism of the first failed trial: {}\n", mechanism.words());
         }
-        self.notes.iter().for_each(|note| text += &format!("note: {note}\n"));
+        self.notes.iter().for_each(|note| text += &format!("{}\n", headed(note, "note")));
         let cpu: f64 = self.trials.iter().map(|row| row.trial.cpu_seconds).sum();
         let kept = self.trials.iter().filter(|row| row.trial.kept).count();
-        let kept = if kept > 0 { format!(", {kept} of them kept from before") } else { String::new() };
+        let kept = if kept > 0 { format!(", {kept} of them reused") } else { String::new() };
         text + &format!(
-            "{} trials{kept}, {cpu:.1} CPU s; {:.1} s by the clock with {} at the same time\n",
+            "{} trials{kept}, {cpu:.1} CPU s, {:.1} s of wall time with {} at the same time\n",
             self.trials.len(),
             self.seconds,
             self.jobs
@@ -200,15 +201,15 @@ impl FosReport {
         match (&self.kink, self.criteria[1].first_failed) {
             (_, None) => "",
             (Some(_), _) => {
-                "use the kink, from which on displacements grow without measure; the other is a coarse check, too low \
-                 where soil yields long before the body fails\n"
+                "Use the result by the kink, where displacements start to increase without bound. The other one is \
+                 a rough check; it is too low where soil yields long before it fails.\n"
             }
             (None, _) if self.plan.softens => {
-                "use the first; the other is too low where soil yields long before the body fails\n"
+                "Use the first result. The other one is too low where soil yields long before it fails.\n"
             }
             (None, _) => {
-                "there is no kink: use the first, reported by what the note says; the other is too low where soil yields long \
-                 before the body fails\n"
+                "There is no kink. Use the first result, whose criterion is given below. The other one is too low \
+                 where soil yields long before it fails.\n"
             }
         }
     }
@@ -261,11 +262,10 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
     let [x, y, _] = trial.farthest;
     (trial.largest_displacement > DOUBLED * trial.displacement).then(|| {
         format!(
-            "at {} a few material points have moved {:.1} times as far as the block of cells that decides, up to {:.2e} at \
-             ({x:.2}, {y:.2}): they creep at a free surface and do not count",
+            "W0801: in the trial {} a few material points near ({x:.2}, {y:.2}) m moved {:.1} times as far as the \
+             soil around. They are ignored. Check in ParaView that they are no failure.",
             trial.factor,
-            trial.largest_displacement / trial.displacement,
-            trial.largest_displacement
+            trial.largest_displacement / trial.displacement
         )
     })
 }
@@ -274,8 +274,8 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
 fn untrusted(trial: &FosTrial) -> Option<String> {
     (!trial.failed_indicators.is_empty()).then(|| {
         format!(
-            "the trial of {} is the last stable one, and has indicators beyond their limits: {}. The result may be wrong by 10 % \
-             or more; its log says what to do",
+            "W0802: the last stable trial ({}) has indicators beyond their limits: {}. The result may be wrong by \
+             10 % or more. Follow the advice in its log.",
             trial.factor,
             trial.failed_indicators.join(", ")
         )
@@ -288,8 +288,8 @@ fn pulled_sides(mechanism: &Mechanism, sought: Sought) -> Option<String> {
     let sides: Vec<String> = mechanism.pulled.iter().map(side).collect();
     (!sides.is_empty()).then(|| {
         format!(
-            "the mechanism reaches a side of the grid that is in tension there: {}. It may hold the ground back, so that the \
-             {} is too high. Move that side farther away, or let it release the ground by \"contact\" in [boundary]",
+            "W0803: the mechanism reaches a side of the grid that is in tension: {}. The {} may be too high. Move \
+             this side away, or use \"contact\" there.",
             sides.join(", "),
             sought.name()
         )
@@ -303,11 +303,13 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
     if coarse.first_failed.is_none() {
         let value = subject.sought.value();
         let last = rows.last().map_or(0.0, |row| row.trial.factor);
-        notes.push(format!("no failure up to the {value} {last}: a greater --to may find it"));
+        notes.push(format!(
+            "W0804: no trial up to the {value} {last} fails, so only a lower bound is known. Increase --to."
+        ));
     } else if kink.is_none() && curve.has_branch() {
         notes.push(
-            "no trial beyond failure shows a branch that could be continued back to the kink; the band is that of the first \
-             trial without equilibrium, or with five times the elastic displacement"
+            "W0805: the displacements after failure form no straight branch, so the band is that of the first \
+             failed trial. Use more load steps for a sharper result."
                 .to_owned(),
         );
     }
@@ -315,22 +317,22 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
     if !isolated.is_empty() {
         let factors: Vec<String> = isolated.iter().map(f64::to_string).collect();
         notes.push(format!(
-            "no equilibrium was found at {}, though a weaker body stands: the solver's failure, not the body's; it does not \
-             count",
+            "W0806: no equilibrium was found at {}, although weaker soil is stable. These trials are ignored. Use \
+             more load steps if they are many.",
             factors.join(", ")
         ));
     }
     let first = coarse.first_failed.and_then(|factor| rows.iter().find(|row| row.trial.factor == factor));
     if let Some(row) = first.filter(|row| row.verdict == Verdict::NoEquilibrium && row.growth <= DOUBLED) {
         notes.push(format!(
-            "the first failure, at {}, found no equilibrium with {:.2} times the elastic displacement: more load steps or \
-             iterations may carry it further",
+            "W0807: the first failed trial ({}) stopped at {:.2} times the elastic displacement, so the solver may \
+             have failed, not the soil. Use more load steps.",
             row.trial.factor, row.growth
         ));
         if !subject.free_bodies.is_empty() {
             notes.push(format!(
-                "the ground has hardly moved in that trial, and rigid bodies are free to move: {}. They may be what fails: \
-                 look at the trial, or replace them by a [[traction]]",
+                "W0808: the soil hardly moved in the first failed trial, so a free rigid body may have failed: {}. \
+                 Look at the trial, or use a [[traction]] instead.",
                 subject.free_bodies.join(", ")
             ));
         }

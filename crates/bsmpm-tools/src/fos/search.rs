@@ -64,9 +64,8 @@ pub(super) fn search(plan: SearchPlan, known: &mut Known<'_>) -> Result<FactorCu
     let elastic = known(ELASTIC).ok_or(Halt::Needs(ELASTIC))?;
     if !(elastic.whole && elastic.displacement.is_finite() && elastic.displacement > 0.0) {
         return Err(over(
-            "even as an elastic body, without strength that could limit the stress, it finds no equilibrium under its load, \
-             or does not move: look at that trial (trials/0.out), at the case's supports, and at its loads, which must not \
-             come at once (ramp); more load steps and [solver] max_iterations help"
+            "E0827: even with elastic soil the trial finds no equilibrium or no displacement (trials/0.out). Check \
+             supports and loads, apply the loads with `ramp`, or use more load steps."
                 .to_owned(),
         ));
     }
@@ -76,8 +75,8 @@ pub(super) fn search(plan: SearchPlan, known: &mut Known<'_>) -> Result<FactorCu
     search.climb()?;
     if search.curve.crossing(DOUBLED).last_stable.is_none() {
         return Err(over(format!(
-            "no stable state was found down to the {} {}: try a smaller --from, or look at that trial for what fails: the \
-             body, or the solver ([solver] max_iterations, more load steps)",
+            "E0828: the first trial, with the {} {}, fails already, so no stable state was found. Reduce --from; \
+             if the solver failed, use more load steps.",
             plan.sought.value(),
             plan.from
         )));

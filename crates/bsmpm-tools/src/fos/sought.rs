@@ -19,9 +19,9 @@ pub enum PushedSide {
     Left,
     /// Towards the highest x
     Right,
-    /// Towards the lowest y of a solid
+    /// Towards the lowest y (3-D)
     Front,
-    /// Towards the highest y of a solid
+    /// Towards the highest y (3-D)
     Back,
 }
 
@@ -103,15 +103,23 @@ impl Sought {
     pub fn refusal(self, case: &Case) -> Option<String> {
         let Self::SeismicCoefficient(pushed) = self else { return None };
         let Some(gravity) = &case.gravity else {
-            return Some("without [gravity] there is no seismic coefficient: it is a part of gravity".to_owned());
+            let reason =
+                "E0824: the seismic coefficient is a fraction of gravity, and the case has none. Add [gravity].";
+            return Some(reason.to_owned());
         };
         let dims = case.grid.dims();
         let is_straight = gravity.acceleration[..dims - 1].iter().all(|part| *part == 0.0);
         if !is_straight || gravity.acceleration[dims - 1] >= 0.0 {
-            return Some("gravity.acceleration must be straight down: --seismic adds the horizontal part".to_owned());
+            let reason = "E0824: gravity.acceleration is not vertically downwards, but --seismic adds the \
+                          horizontal part. Give the vertical component only.";
+            return Some(reason.to_owned());
         }
         if case.geometry == Geometry::Axisymmetric || pushed.direction(case.geometry).is_none() {
-            return Some(format!("--seismic: ground of this geometry cannot be pushed to the {}", pushed.side()));
+            let side = pushed.side();
+            return Some(format!(
+                "E0825: the ground cannot be pushed to the {side} in this geometry. Use left or right in plane \
+                 strain, in 3-D also front or back."
+            ));
         }
         None
     }

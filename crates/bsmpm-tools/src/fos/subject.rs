@@ -27,9 +27,8 @@ const SMALL: f64 = 2e-3;
 /// Stiffening by less is none.
 const UNCHANGED: f64 = 1.01;
 /// What the factor of strength that falls with strain is.
-const SOFTENS: &str = "strength falls with plastic strain: peak and residual strength are divided alike, stiffness is the \
-                       case's own, as how far the ground is strained matters; the first trial without equilibrium, or \
-                       beyond five times the elastic displacement, has failed; it depends on the cells: compare two sizes";
+const SOFTENS: &str = "W0809: a material softens, so the factor depends on the size of the cells and on the \
+                       stiffness of the soil. Compare two sizes of cells.";
 /// The largest displacement of all points, as a case may record it.
 const QUANTITY: &str = "max-displacement";
 
@@ -126,7 +125,10 @@ impl Subject {
         let FosQuestion { sought, from, stage, undrained, .. } = *question;
         if let Some(set) = set.iter().map(|set| set.trim_start()).find(|set| set.starts_with("strength_reduction")) {
             let key = set.split('=').next().unwrap_or(set).trim_end();
-            let reason = format!("--set {key}: the search sets that; of a stage: --stage, and --undrained");
+            let reason = format!(
+                "E0830: --set {key} conflicts with the search, which sets the strength reduction. Remove it; for a \
+                 stage use --stage and --undrained."
+            );
             return Err(Error::Usage { reason });
         }
         let bytes = case::load(path)?;
@@ -250,33 +252,33 @@ impl Subject {
         let stiffness = self.conditions.stiffness;
         let stiffened = (stiffness != 1.0).then(|| {
             format!(
-                "the trials have {stiffness} times the case's stiffness, so that the geometry stays as drawn; displacements \
-                 are reported as of its own"
+                "the trials use {stiffness} times the stiffness of the case, so that the geometry stays as drawn; \
+                 the reported displacements are those of its own stiffness"
             )
         });
         let grown = self.is_grown.then(|| {
-            "a load acts at once in the case (ramp = 0); here it grows over the whole run (ramp = end)".to_owned()
+            "a load acts at once in the case (ramp = 0); in the trials it increases over the whole run".to_owned()
         });
         let unstressed = self.is_stressed.then(|| {
-            "the case begins with a stress ([initial]); the trials begin without: a load that a body can carry does not \
-             depend on the stress before it (exactly so with dilation = friction)"
+            "the trials start without the initial stress of the case ([initial]), because the limit load does not \
+             depend on it (exactly so for associated plasticity)"
                 .to_owned()
         });
         let staged = self.stage.as_ref().map(|(name, until)| {
             format!(
-                "the strength falls at the end of the stage \"{name}\", t = {until}, with the stress that it leaves; \
-                 displacements are those since, added to the elastic one"
+                "the strength is reduced from the state at the end of the stage \"{name}\", t = {until}; \
+                 displacements are those since then, added to the elastic displacement"
             )
         });
         let has_friction = self.has_friction.then(|| {
-            "the friction of interfaces (boundary faces, footings, prescribed segments, rigid bodies and terrain) is divided by \
-             the factor as tan(phi) is"
+            "the friction coefficient of interfaces (boundaries, footings, prescribed segments, rigid bodies, \
+             terrain) is reduced by the same factor as the strength"
                 .to_owned()
         });
-        let rigid = self.has_rigid[0].then(|| "rigid bodies do not fail themselves".to_owned());
+        let rigid = self.has_rigid[0].then(|| "rigid bodies themselves cannot fail".to_owned());
         let stopped = self.has_rigid[1].then(|| {
-            "rigid bodies and strips that move as prescribed are held where they are then: what they press with falls as the soil \
-             does, and is no load"
+            "rigid bodies and footings with a prescribed motion are fixed at the end of the stage; their force on \
+             the soil decreases with its strength"
                 .to_owned()
         });
         let softens = self.softens.then(|| SOFTENS.to_owned());
@@ -315,7 +317,10 @@ fn counted(case: &Case, region: &[f64]) -> Result<CountedPoints, Error> {
     }
     let (lower, upper) = region.split_at(region.len() / 2);
     if region.len() != 2 * dims || lower.iter().zip(upper).any(|(low, high)| low >= high) {
-        let reason = format!("--region: give {dims} lower and then {dims} larger upper coordinates, between commas");
+        let reason = format!(
+            "E0832: --region is not a box. Give {dims} lower and then {dims} larger upper coordinates, separated \
+             by commas."
+        );
         return Err(Error::Usage { reason });
     }
     let corner = |numbers: &[f64]| std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0));
@@ -393,7 +398,7 @@ fn until(case: &Case, name: &str) -> Result<f64, Error> {
     case.end_of_stage(name).ok_or_else(|| {
         let names = case.stages.iter().filter_map(|stage| stage.name.as_ref()).map(|name| format!("{name:?}"));
         let names: Vec<String> = names.chain(["start", "end"].map(|name| format!("{name:?}"))).collect();
-        Error::Usage { reason: format!("--stage {name:?}: the case has {}", names.join(", ")) }
+        Error::Usage { reason: format!("E0833: the case has no stage {name:?}. Choose one of: {}.", names.join(", ")) }
     })
 }
 

@@ -159,10 +159,10 @@ impl Trials<'_> {
         if [RunState::NoConvergence, RunState::Left].contains(&outcome.state) {
             let at = outcome.manifest.as_ref().and_then(|manifest| manifest.failure.as_ref()).map_or(0.0, |it| it.time);
             let reason = format!(
-                "with its whole strength the case does not stand until the end of the stage \"{name}\", t = {until}: it ended \
-                 at t = {at} ({}); look at {}",
-                outcome.reason,
-                directory.display()
+                "E0829: with its full strength the case fails at t = {at}, before the end of stage \"{name}\" (t = \
+                 {until}). Make it stable until then; see {}: {}",
+                directory.display(),
+                outcome.reason
             );
             return Err(Error::NoStableState { reason });
         }
@@ -215,7 +215,8 @@ impl Trials<'_> {
         let ground = frame.and_then(|frame| MovedGround::of(frame, &self.subject.counted));
         ground.ok_or_else(|| Error::Usage {
             reason: format!(
-                "no material point that counts is in the last frame of {}: give a --region that has material in it",
+                "E0832: no material point of the last frame of {} lies in the region. Give a --region that \
+                 contains soil.",
                 directory.display()
             ),
         })

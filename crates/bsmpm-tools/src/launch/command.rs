@@ -36,7 +36,9 @@ pub(crate) fn ranks(command: &[String]) -> usize {
 /// [`Error::Usage`] for none at all.
 pub(crate) fn jobs(asked: Option<usize>, command: &[String]) -> Result<usize, Error> {
     if asked == Some(0) {
-        return Err(Error::Usage { reason: "--jobs 0: at least one runs at a time".to_owned() });
+        return Err(Error::Usage {
+            reason: "E0809: --jobs is 0, so no run would start. Give a number of at least 1.".to_owned(),
+        });
     }
     let cores = thread::available_parallelism().map_or(1, usize::from);
     Ok(asked.unwrap_or_else(|| (cores / ranks(command)).max(1)))

@@ -156,5 +156,5 @@ impl Outcome {
 
 fn last_line(directory: &Path) -> String {
     let text = fs::read_to_string(beside(directory, "log")).unwrap_or_default();
-    text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it left no word").to_owned()
+    text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("its log is empty").to_owned()
 }

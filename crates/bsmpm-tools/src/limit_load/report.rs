@@ -201,15 +201,15 @@ impl GridLoad {
         let changed = 100.0 * change;
         let warning = match (*load <= 0.0, *change > 0.0) {
             (true, _) => format!(
-                "W0850: {name} meets no resistance on cells of {cell} m, so there is no limit load. Check that it touches the \
+                "W0850: `{name}` meets no resistance on cells of {cell} m, so there is no limit load. Check that it touches the \
                  ground and moves towards it."
             ),
             (_, true) => format!(
-                "W0851: the load of {name} still rises on cells of {cell} m, by {changed:.1} % over the last quarter of the \
+                "W0851: the load of `{name}` still rises on cells of {cell} m, by {changed:.1} % over the last quarter of the \
                  displacement (at most 1 %). Increase the prescribed displacement."
             ),
             _ => format!(
-                "W0852: the load of {name} falls on cells of {cell} m, by {:.1} % over the last quarter of the displacement (at \
+                "W0852: the load of `{name}` falls on cells of {cell} m, by {:.1} % over the last quarter of the displacement (at \
                  most 1 %). Increase analysis.steps.",
                 -changed
             ),

@@ -29,7 +29,11 @@ pub(super) fn draw(
 ) -> Result<Vec<String>, Error> {
     let values: Option<Vec<_>> = frames.iter().map(|frame| field.values(frame)).collect();
     let missing = || Error::Missing {
-        reason: format!("the frames of {} have no field \"{}\"", record.directory.display(), field.field()),
+        reason: format!(
+            "E0847: the frames of {} have no field `{}`. Choose another --field, or add it to output.fields.",
+            record.directory.display(),
+            field.field()
+        ),
     };
     let values = values.ok_or_else(missing)?;
     let colours = wanted.unwrap_or_else(|| field.range(&values));

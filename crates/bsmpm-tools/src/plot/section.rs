@@ -40,7 +40,8 @@ pub(super) fn of(
     wanted: Option<Section>,
 ) -> Result<(Vec<Frame>, Option<Section>), Error> {
     if !record.is_solid() {
-        let reason = "the run is of a plane: sections are of solids".to_owned();
+        let reason =
+            "E0848: the run is two-dimensional, and --section applies to 3-D only. Remove --section.".to_owned();
         return if wanted.is_some() { Err(Error::Missing { reason }) } else { Ok((frames, None)) };
     }
     let across = record.across;
@@ -56,7 +57,12 @@ pub(super) fn of(
     let at = match frames.iter().all(|frame| frame.position.iter().any(is_near)) {
         true => at,
         false if wanted.is_some() => {
-            let reason = format!("no point is nearer than {} m to {} = {} m", short(reach), AXES[across], short(at));
+            let reason = format!(
+                "E0848: no material point is within {} m of the section {} = {} m. Choose a section through the soil.",
+                short(reach),
+                AXES[across],
+                short(at)
+            );
             return Err(Error::Missing { reason });
         }
         false => 0.5 * (low + high),

@@ -16,14 +16,16 @@ pub(super) type SweepSetting = Vec<Option<String>>;
 impl SweepAxis {
     /// `KEY=V1,V2,...`; a comma within brackets, braces or quotes belongs to a value.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = |why: &str| Err(format!("--vary {text}: {why}; expected KEY=V1,V2,..."));
-        let Some((key, values)) = text.split_once('=') else { return wrong("no =") };
+        let wrong = |why: &str| {
+            Err(format!("E0838: --vary {text} is invalid: {why}. Give a key and its values as KEY=V1,V2,... once."))
+        };
+        let Some((key, values)) = text.split_once('=') else { return wrong("`=` is missing") };
         let (key, values) = (key.trim().to_owned(), split(values));
         if key.is_empty() || values.iter().any(String::is_empty) {
-            return wrong("an empty key or value");
+            return wrong("the key or a value is empty");
         }
         match (1..values.len()).find(|&index| values[..index].contains(&values[index])) {
-            Some(twice) => wrong(&format!("{} is there twice", values[twice])),
+            Some(twice) => wrong(&format!("the value {} occurs twice", values[twice])),
             None => Ok(Self { key, values }),
         }
     }
@@ -55,11 +57,16 @@ pub(crate) fn split(text: &str) -> Vec<String> {
 /// Says that a key is varied twice, or that there are too many.
 pub(super) fn settings(axes: &[SweepAxis], one_at_a_time: bool) -> Result<Vec<SweepSetting>, String> {
     if let Some(twice) = (1..axes.len()).find(|&index| axes[..index].iter().any(|axis| axis.key == axes[index].key)) {
-        return Err(format!("--vary {}: the key is varied twice", axes[twice].key));
+        return Err(format!(
+            "E0838: --vary is given twice for the key {}. Give all values of a key as KEY=V1,V2,... once.",
+            axes[twice].key
+        ));
     }
     let count = axes.iter().fold(1_usize, |count, axis| count.saturating_mul(axis.values.len()));
     if count > MOST && !one_at_a_time {
-        return Err(format!("{count} settings are too many: at most {MOST}"));
+        return Err(format!(
+            "E0839: the sweep has {count} combinations, more than {MOST}. Reduce the values, or use --one-at-a-time."
+        ));
     }
     let own: SweepSetting = vec![None; axes.len()];
     let mut settings = vec![own.clone()];

@@ -43,10 +43,13 @@ impl SweepArguments {
         if quantities.iter().any(SweepQuantity::is_factor) {
             return match (quantities, self.options.max_wall) {
                 ([only], None) if only.name == FACTOR => Ok(()),
-                (_, Some(_)) => usage(format!("--max-wall: not with --quantity {FACTOR}")),
-                _ => {
-                    usage(format!("--quantity {FACTOR}: alone and without a time, for it takes the place of the runs"))
+                (_, Some(_)) => {
+                    usage(format!("E0837: --max-wall cannot be combined with --quantity {FACTOR}. Remove one of them."))
                 }
+                _ => usage(format!(
+                    "E0837: --quantity {FACTOR} must be the only quantity, without a time, because it replaces the \
+                     runs. Use a separate sweep."
+                )),
             };
         }
         let columns: Vec<String> =
@@ -54,7 +57,7 @@ impl SweepArguments {
         let parts = quantities.iter().flat_map(|quantity| &quantity.parts);
         match parts.into_iter().find(|part| !columns.contains(&part.column)) {
             Some(part) => usage(format!(
-                "--quantity {}: the case has no [[history]] of that name; it has {}, and there is {FACTOR}",
+                "E0836: no [[history]] of the case records `{}`. Add one, or choose from: {}, {FACTOR}.",
                 part.column,
                 columns.join(", ")
             )),

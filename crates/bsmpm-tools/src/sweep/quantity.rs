@@ -28,8 +28,11 @@ pub(crate) struct QuantityPart {
 impl SweepQuantity {
     /// `NAME[@TIME],...`; a name without a time takes that of the next one that has it.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong =
-            |why: &str| format!("--quantity {text}: {why}; expected NAME[@TIME], or several with commas between");
+        let wrong = |why: &str| {
+            format!(
+                "E0835: --quantity {text} is invalid: {why}. Give NAME or NAME@TIME, or several separated by commas."
+            )
+        };
         let mut parts = Vec::new();
         for part in text.split(',').rev() {
             let (column, at) = match part.split_once('@') {
@@ -37,7 +40,7 @@ impl SweepQuantity {
                 None => (part.trim(), parts.last().and_then(|next: &QuantityPart| next.at)),
             };
             if column.is_empty() {
-                return Err(wrong("an empty name"));
+                return Err(wrong("a name is empty"));
             }
             parts.push(QuantityPart { column: column.to_owned(), at });
         }

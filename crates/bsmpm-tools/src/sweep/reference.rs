@@ -63,7 +63,10 @@ impl Reference {
                 Ok(())
             }
             Self::Numbers(numbers) => Err(Error::Usage {
-                reason: format!("--reference: {} number(s), but the quantities have {parts} part(s)", numbers.len()),
+                reason: format!(
+                    "E0840: --reference has {} number(s) for {parts} quantities. Give one finite number for each.",
+                    numbers.len()
+                ),
             }),
             Self::Run(directory) => elsewhere(directory, quantities).map(|_| ()),
         }
@@ -104,10 +107,15 @@ impl Reference {
 
 /// The quantities of a run that is not of the sweep.
 fn elsewhere(directory: &Path, quantities: &[SweepQuantity]) -> Result<Vec<Vec<f64>>, Error> {
-    let refused = |reason: &str| Error::Usage { reason: format!("--reference {}: {reason}", directory.display()) };
+    let refused = |reason: &str| Error::Usage {
+        reason: format!(
+            "E0840: the reference {} cannot be used: {reason}. Give the directory of a completed run.",
+            directory.display()
+        ),
+    };
     let manifest = Manifest::read(directory).map_err(|error| refused(&error.to_string()))?;
     if manifest.status == Status::Running || manifest.status == Status::Stopped {
-        return Err(refused("the run has not come to its end"));
+        return Err(refused("the run is not completed"));
     }
     let history = table::read(&directory.join(HISTORY))?;
     let of = |quantity: &SweepQuantity| quantity.values(&history);
@@ -126,7 +134,7 @@ fn baseline(quantities: &[SweepQuantity], points: &[Point], values: &[Option<Ref
 }
 
 fn finest(quantities: &[SweepQuantity], points: &[Point], values: &[Option<ReferenceValues>]) -> FoundReference {
-    of_run(best(points, values), "the finest run that has finished", quantities, points, values)
+    of_run(best(points, values), "the finest completed run", quantities, points, values)
 }
 
 /// A run of the sweep as the reference, if it has finished.
@@ -138,7 +146,7 @@ fn of_run(
     values: &[Option<ReferenceValues>],
 ) -> FoundReference {
     let Some((index, values)) = index.and_then(|index| Some((index, values[index].clone()?))) else {
-        let what = format!("none: {what} is not there");
+        let what = format!("none: {what} is missing");
         return FoundReference { what, values: vec![None; quantities.len()], run: None, notes: Vec::new() };
     };
     FoundReference { what: format!("{what}: {}", points[index].name()), values, run: Some(index), notes: Vec::new() }
@@ -158,8 +166,8 @@ fn extrapolated(quantities: &[SweepQuantity], points: &[Point], values: &[Option
     let [first, second, third, ..] = series[..] else {
         let sizes = series.len();
         found.notes.push(format!(
-            "no extrapolation: {sizes} size(s) of cells with all else as in the finest run, three are needed; errors are \
-             against the finest run"
+            "no extrapolation, because it needs runs with three cell sizes that are equal otherwise, and there are {sizes}; errors \
+             refer to the finest run"
         ));
         return found;
     };
@@ -195,7 +203,7 @@ fn limit(h: [f64; 3], f: [f64; 3]) -> (f64, String) {
                 ConvergenceType::OscillatoryDiverging => "oscillate and diverge",
                 _ => "do not converge",
             };
-            (f[0], format!("{}, {}, {} {word}: no limit; the finest value is the reference", f[2], f[1], f[0]))
+            (f[0], format!("{}, {}, {} {word}; the reference is the finest value", f[2], f[1], f[0]))
         }
     }
 }
@@ -251,9 +259,9 @@ mod tests {
         assert_eq!((limit.run, limit.values[0].clone()), (Some(4), Some(vec![3.0])), "{limit:?}");
         fewer[0] = None;
         let none = found(&Reference::Baseline, &fewer);
-        assert!(none.run.is_none() && none.what == "none: the baseline is not there", "{none:?}");
+        assert!(none.run.is_none() && none.what == "none: the baseline is missing", "{none:?}");
         let limit = found(&Reference::Extrapolated, &fewer);
-        assert!(limit.run == Some(4) && limit.notes[0].contains("three are needed"), "{limit:?}");
+        assert!(limit.run == Some(4) && limit.notes[0].contains("three cell sizes"), "{limit:?}");
         let nothing = found(&Reference::Finest, &vec![None; 6]);
         assert!(nothing.run.is_none() && nothing.values == [None]);
     }

@@ -47,7 +47,7 @@ pub(super) fn outcome(batch: &Batch, order: &RunOrder) -> Outcome {
 fn of(found: fos::FoundFactor, directory: PathBuf) -> Outcome {
     let cost = found.cost;
     let Some(factor) = found.factor else {
-        let reason = format!("no failure up to the factor {}", RANGE[1]);
+        let reason = format!("it does not fail up to the factor {}", RANGE[1]);
         return Outcome { cost, directory: Some(directory), ..Outcome::never(RunState::Broken, reason) };
     };
     let headings = ["time", FACTOR].map(|name| TableColumn::new(name, "-")).to_vec();

@@ -13,7 +13,7 @@ const EACH: &str = "*";
 pub(super) fn text(original: &str, set: &[String]) -> Result<String, String> {
     let mut document: DocumentMut = original.parse().map_err(|error: toml_edit::TomlError| error.to_string())?;
     for set in set {
-        let (key, value) = set.split_once('=').ok_or_else(|| format!("{set}: no ="))?;
+        let (key, value) = set.split_once('=').ok_or_else(|| format!("{set} has no `=`"))?;
         let parts: Vec<&str> = key.split('.').map(str::trim).collect();
         let value = parsed(value.trim());
         in_table(document.as_table_mut(), Some(&ROOT), &parts, &value).map_err(|why| format!("{set}: {why}"))?;
@@ -32,7 +32,7 @@ fn in_table(
     parts: &[&str],
     value: &Value,
 ) -> Result<(), String> {
-    let (name, rest) = parts.split_first().ok_or("no key")?;
+    let (name, rest) = parts.split_first().ok_or("a key is missing")?;
     let name = schema.map_or(*name, |schema| name_in(table, schema, name));
     if let Some(schema) = schema {
         schema.rivals(name).for_each(|rival| _ = table.remove(rival));
@@ -51,7 +51,7 @@ fn in_table(
         made.set_implicit(true);
         table.insert(name, Item::Table(made));
     }
-    let item = table.get_mut(name).ok_or("no table")?;
+    let item = table.get_mut(name).ok_or("a table is missing")?;
     match (kind, item.as_table_like_mut()) {
         (Some(Kind::Named(below)), Some(named)) => in_named(named, below, rest, value),
         _ => in_item(item, kind.and_then(Kind::table), rest, value),
@@ -67,7 +67,7 @@ fn name_in<'a>(table: &dyn TableLike, schema: &'static Schema, name: &'a str) ->
 
 /// In a table whose keys are names of the author's choice.
 fn in_named(named: &mut dyn TableLike, schema: &'static Schema, parts: &[&str], value: &Value) -> Result<(), String> {
-    let (name, rest) = parts.split_first().ok_or("no name")?;
+    let (name, rest) = parts.split_first().ok_or("a name is missing")?;
     if *name == EACH {
         return named.iter_mut().try_for_each(|(_, item)| in_item(item, Some(schema), rest, value));
     }
@@ -78,7 +78,7 @@ fn in_named(named: &mut dyn TableLike, schema: &'static Schema, parts: &[&str], 
 }
 
 fn in_item(item: &mut Item, schema: Option<&'static Schema>, parts: &[&str], value: &Value) -> Result<(), String> {
-    let (part, rest) = parts.split_first().ok_or("no index")?;
+    let (part, rest) = parts.split_first().ok_or("an index is missing")?;
     if let Some(tables) = item.as_array_of_tables_mut() {
         let index: Option<usize> = part.parse().ok();
         for (_, table) in tables.iter_mut().enumerate().filter(|(place, _)| *part == EACH || index == Some(*place)) {
@@ -87,13 +87,13 @@ fn in_item(item: &mut Item, schema: Option<&'static Schema>, parts: &[&str], val
         return if *part == EACH || index.is_some_and(|index| index < tables.len()) {
             Ok(())
         } else {
-            Err(format!("`{part}` is no item of the list"))
+            Err(format!("the list has no item `{part}`"))
         };
     }
     if let Some(list) = item.as_array_mut() {
         return in_list(list, schema, parts, value);
     }
-    let table = item.as_table_like_mut().ok_or_else(|| format!("`{part}` lies in what is no table"))?;
+    let table = item.as_table_like_mut().ok_or_else(|| format!("`{part}` is not in a table"))?;
     in_table(table, schema, parts, value)
 }
 
@@ -103,7 +103,7 @@ fn in_list(
     parts: &[&str],
     value: &Value,
 ) -> Result<(), String> {
-    let (part, rest) = parts.split_first().ok_or("no index")?;
+    let (part, rest) = parts.split_first().ok_or("an index is missing")?;
     let index: Option<usize> = part.parse().ok();
     let mut found = false;
     for (_, item) in list.iter_mut().enumerate().filter(|(place, _)| *part == EACH || index == Some(*place)) {
@@ -112,10 +112,10 @@ fn in_list(
             (true, item) => replace(item, value),
             (false, Value::InlineTable(table)) => in_table(table, schema, rest, value)?,
             (false, Value::Array(inner)) => in_list(inner, schema, rest, value)?,
-            _ => return Err(format!("`{part}` is no table")),
+            _ => return Err(format!("`{part}` is not a table")),
         }
     }
-    if found { Ok(()) } else { Err(format!("`{part}` is no item of the list")) }
+    if found { Ok(()) } else { Err(format!("the list has no item `{part}`")) }
 }
 
 /// The value in the place of another: spaces and comments about it stay.

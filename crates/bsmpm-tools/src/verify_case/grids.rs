@@ -70,7 +70,7 @@ impl VerifyArguments {
                 Ok(cells.iter().map(of).collect())
             } else {
                 usage(format!(
-                    "E0859: --cells has {count} size(s) of cells, and three are needed. Give three, such as 0.4,0.2,0.1."
+                    "E0859: --cells gives {count} sizes, but three are needed. Give three, such as 0.4,0.2,0.1."
                 ))
             };
         }
@@ -88,7 +88,7 @@ impl VerifyArguments {
         }
         if graded && self.ratio.fract() != 0.0 {
             return usage(format!(
-                "E0862: --ratio {} is no whole number, and the cells of this grid have several sizes. Use a whole number, or equal \
+                "E0862: --ratio {} is not a whole number, and the cells of this grid have several sizes. Use a whole number, or equal \
                  cells with --cells.",
                 self.ratio
             ));

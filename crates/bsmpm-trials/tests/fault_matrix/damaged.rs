@@ -49,7 +49,7 @@ pub fn truncated(ground: &Ground, count: usize) -> Tried {
         std::fs::write(&file, &bytes[..lengths[2 + index]]).unwrap();
         let trial = stopped.copy();
         trial.finish();
-        trial.has_warned("an older checkpoint is used");
+        trial.has_warned("The run continues from an older checkpoint");
         assert_eq!(trial.resumed_from(), 5);
         trial.becomes(&whole);
         0.0
@@ -166,7 +166,7 @@ pub fn other_form(ground: &Ground, _: usize) -> Tried {
         let trial = stopped.copy();
         let file = trial.checkpoint(NEWEST);
         record(&file, |record| record["schema"] = if index == 0 { 5.into() } else { 0.into() });
-        refused(&trial, &file, "this program reads form 1")
+        refused(&trial, &file, "this program reads format 1")
     });
     tried.figure(|_| "76, with both numbers".into())
 }

@@ -72,7 +72,7 @@ pub fn second_run(ground: &Ground, count: usize) -> Tried {
         let trial = ground.trial(2);
         let running = trial.under_way(2, 0.0, &[]);
         let second = trial.job(&[]).start_beside().end().expect(73);
-        second.says_once("is held by");
+        second.says_once("is in use by");
         running.end().expect(0);
         same(&results(&trial.directory()), &whole.results);
         second.elapsed.as_secs_f64()

@@ -107,7 +107,7 @@ pub fn other_ranks(ground: &Ground, _: usize) -> Tried {
         let mut trial = ground.stopped(before, whole.steps / 2);
         trial.ranks = after;
         trial.finish();
-        trial.has_warned(&format!("restart on {after} rank(s) of a checkpoint of {before}"));
+        trial.has_warned(&format!("written on {before} rank(s), and the run continues on {after}"));
         let found = differences(&last_frame(&trial.directory()), &last_frame(&whole.scratch.path("run")));
         let (name, largest) = found.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
         reported.push(format!("{before} -> {after}: {largest:.0e} ({name})"));

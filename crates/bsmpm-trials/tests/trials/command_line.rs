@@ -4,6 +4,7 @@ mod bad_cases;
 mod directory;
 mod hostile;
 mod log;
+mod newcomer;
 mod petsc_options;
 
 use crate::support::Scratch;
@@ -37,7 +38,7 @@ fn a_wrong_command_line_is_refused_once_with_2_and_leaves_nothing() {
         (&["case.toml", "--max-wall", "90"], "HH:MM:SS"),
         (&["case.toml", "--max-memory", "a lot"], "a lot is no size"),
         (&["case.toml", "--log-format", "xml"], "xml"),
-        (&["case.toml", "--frames", "vtkhdf"], "not available yet"),
+        (&["case.toml", "--frames", "vtkhdf"], "E0703"),
         (&["case.toml", "--threads", "0"], "0 is not in 1..=1024"),
         (&["case.toml", "--restart", "auto", "--force"], "cannot be used with"),
     ];

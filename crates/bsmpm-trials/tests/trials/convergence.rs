@@ -139,15 +139,15 @@ fn a_failure_names_both_measures_their_tolerances_and_what_to_try() {
     let scratch = Scratch::with_case(&changed(BESIDE, "factor = 1.3", "factor = 3.0"));
     let few = ["--set", "solver.max_iterations=4", "--set", "solver.nonlinear=broyden"];
     let output = scratch.mpirun(1, &[&["case.toml"], &few[..]].concat()).expect(80);
-    output.says_once("; try: a larger [solver] max_iterations than 4");
+    output.says_once("Increase `solver.max_iterations` (now 4)");
     let failure = std::fs::read(scratch.path("case.out/failure.json")).unwrap();
     let failure: bsmpm_io::failure::FailureReport = serde_json::from_slice(&failure).unwrap();
     let reason = failure.attempts.last().unwrap();
-    assert!(reason.starts_with("not converged after 4 iterations, their limit: energy measure"), "{reason}");
-    assert!(reason.contains("its tolerance 1e-6; force measure") && reason.contains("its tolerance 1e-3"), "{reason}");
+    assert!(reason.starts_with("E0747: no convergence after 4 iterations (their limit): energy residual"), "{reason}");
+    assert!(reason.contains("tolerance 1e-6), force residual") && reason.contains("tolerance 1e-3)"), "{reason}");
     let tolerances = failure.tolerances.unwrap();
     assert_eq!((tolerances.energy, tolerances.force), (Some(1e-6), Some(1e-3)));
     let (energy, force) = failure.history.last().map(|last| (last.energy.unwrap(), last.force.unwrap())).unwrap();
     assert!(energy >= 1e-6 || force >= 1e-3, "{energy} {force}");
-    assert!(failure.advice.iter().any(|advice| advice.contains("max_iterations than 4")), "{:?}", failure.advice);
+    assert!(failure.advice.iter().any(|advice| advice.contains("max_iterations` (now 4)")), "{:?}", failure.advice);
 }

@@ -63,7 +63,7 @@ fn one_of_twenty(scratch: &Scratch) -> Output {
         std::thread::sleep(Duration::from_millis(20));
         for at in (0..running.len()).rev() {
             if !running[at].goes_on() {
-                running.swap_remove(at).end().expect(73).says_once("is held by");
+                running.swap_remove(at).end().expect(73).says_once("is in use by");
             }
         }
     }
@@ -96,7 +96,7 @@ fn a_dead_runs_lock_on_this_host_is_taken_over_and_that_is_reported() {
     for ranks in [None, Some(2)] {
         killed(&scratch, ranks);
         let holder = lock(&scratch);
-        scratch.job(ranks, &["case.toml"]).run().expect(73).says_once("--force to delete");
+        scratch.job(ranks, &["case.toml"]).run().expect(73).says_once("error E0769: ");
         killed(&scratch, ranks);
         assert_ne!(lock(&scratch), holder);
         scratch.job(ranks, &ONE_STEP).run().expect(75).says_once("taken over from process");

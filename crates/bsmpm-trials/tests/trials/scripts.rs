@@ -1,9 +1,15 @@
 //! The scripts from outside, with programs of the system replaced.
 
 use crate::support::Scratch;
+use crate::support::cases::endless;
+use crate::support::processes::{self, Ears};
+use crate::support::results::manifest;
+use bsmpm_io::manifest::Status;
+use bsmpm_trials::executable;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
 
 /// Writes a program of a directory.
 fn program(directory: &Path, name: &str, body: &str) {
@@ -44,4 +50,30 @@ fn setup_says_nothing_of_alternatives_that_a_package_makes_itself() {
         let expected = if code == 0 { 1 } else { 2 };
         assert!(!installs || errors == expected, "{said}");
     }
+}
+
+/// A cargo that has built already.
+const CARGO: &str = r#"echo '"executable":"SOLVER"'; echo '"executable":"COMPANION"'"#;
+
+/// Ctrl-C of a terminal reaches the script alone, which passes on what mpirun forwards.
+#[test]
+fn an_interrupted_script_stops_the_run_and_says_how_to_continue() {
+    let scratch = Scratch::with_case(&endless());
+    let programs = scratch.path("programs");
+    std::fs::create_dir(&programs).unwrap();
+    let [solver, companion] = ["bsmpm-par", "bsmpm"].map(|name| executable(name).to_str().unwrap());
+    program(&programs, "cargo", &CARGO.replace("SOLVER", solver).replace("COMPANION", companion));
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/run");
+    let mut command = Command::new("bash");
+    command.arg(&script).arg("case.toml").current_dir(scratch.path(""));
+    command.env("PATH", format!("{}:{}", programs.display(), std::env::var("PATH").unwrap()));
+    let mut running = processes::start(command, &[], Ears::Open, Duration::from_secs(120));
+    running.until("its tenth step", || {
+        std::fs::read_to_string(scratch.path("case.out/steps.csv")).is_ok_and(|text| text.lines().count() > 12)
+    });
+    running.signal("INT");
+    let output = running.end().expect(75);
+    output.says_once("stopped by a signal (Ctrl-C or kill)");
+    output.says_once("run -n 2 case.toml -o case.out --restart auto");
+    assert_eq!(manifest(&scratch.path("case.out")).status, Status::Stopped);
 }

@@ -212,7 +212,7 @@ fn ground_that_cannot_stand_has_no_start() {
     let case = bank + "[solver]\nmax_iterations = 30\n";
     let scratch = Scratch::with_case(&case);
     let run = scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(80);
-    assert!(run.stderr.contains("the stress at the start"), "{}", run.stderr);
+    assert!(run.stderr.contains("the initial stress failed"), "{}", run.stderr);
 }
 
 /// A toe that ends in a point has cells with next to no material there. Without extended splines two points along an
@@ -230,8 +230,8 @@ fn a_toe_that_ends_in_a_point_needs_extended_splines_or_more_points() {
     let scratch = Scratch::with_case(&two);
     let off = ["--set", "solver.extension=off"];
     let run = scratch.mpirun(2, &[&["case.toml", "-q", "-o", "off"], &off[..]].concat()).expect(80);
-    let reported = run.stderr.split_once("; node ").expect("the place").1;
-    assert!(reported.contains(" at [17.5") && reported.contains("points_per_cell = 3"), "{}", run.stderr);
+    let place = run.stderr.split_once("Location: node ").expect("the place").1;
+    assert!(place.contains(" at [17.5") && run.stderr.contains("points_per_cell = 3"), "{}", run.stderr);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "two"]).expect(0);
     scratch.write("case.toml", &case);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "three"]).expect(0);

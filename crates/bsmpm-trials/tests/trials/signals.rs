@@ -35,7 +35,7 @@ fn made(scratch: &Scratch) -> usize {
 /// A run that has made a few steps, in a new directory.
 fn under_way(scratch: &Scratch, ranks: Option<usize>) -> Running {
     let _ = std::fs::remove_dir_all(scratch.path("case.out"));
-    let mut running = scratch.job(ranks, &["case.toml"]).within(HANGS).start();
+    let mut running = scratch.job(ranks, &["case.toml", "-v"]).within(HANGS).start();
     running.until("its tenth step", || made(scratch) >= 10);
     running.until("the frame of the start", || scratch.path("case.out/frames.pvd").exists());
     running
@@ -72,7 +72,7 @@ fn usr1_to_any_process_stops_all_ranks_at_one_state_with_75() {
     for (ranks, to) in ways {
         let running = under_way(&scratch, ranks);
         to.send("USR1", &running);
-        running.end().expect(75).says_once("stopped by a signal");
+        running.end().expect(75).says_once("The run was stopped by a signal");
         stopped(&scratch);
     }
 }
@@ -84,7 +84,9 @@ fn term_and_int_stop_as_usr1_does() {
         for (ranks, to) in [(None, To::Launcher), (Some(2), To::Rank(1))] {
             let running = under_way(&scratch, ranks);
             to.send(name, &running);
-            running.end().expect(75).says_once("stopped by a signal");
+            let output = running.end().expect(75);
+            output.says_once("The run was stopped by a signal (Ctrl-C or kill).");
+            output.says_once("case.toml --restart auto");
             stopped(&scratch);
         }
     }
@@ -119,9 +121,9 @@ fn usr2_writes_a_frame_and_a_checkpoint_and_changes_nothing_else() {
         to.send("USR1", &running);
         let output = running.end().expect(75);
         stopped(&scratch);
-        let (directory, count) = (scratch.path("case.out"), output.count("a frame and a checkpoint are written"));
+        let (directory, count) = (scratch.path("case.out"), output.count("Writing a frame and a checkpoint"));
         assert_eq!(all_frames(&directory).len(), 2 + count, "start, on request, end: {output:#?}");
-        assert_eq!(output.count("checkpoint of step"), 1 + count, "on request, end: {output:#?}");
+        assert_eq!(output.count("Checkpoint of step"), 1 + count, "on request, end: {output:#?}");
         let interrupted = history(&directory);
         let last = interrupted.get("step").unwrap().last().unwrap().to_string();
         let whole = ["case.toml", "-q", "-o", "whole", "--force", "--max-steps", &last];

@@ -138,7 +138,7 @@ fn too_few_cells_across_a_hole_are_reported() {
     let warning = "W0227: body.0.subtract.0: the hole or notch of 1 m is 2.0 cells across (at least 8 needed)";
     assert!(check.stdout.contains(warning), "{}", check.stdout);
     let log = scratch.mpirun(2, &["case.toml", "--set", "grid.cell=0.5"]).expect(0).stderr;
-    assert!(log.contains(warning) && log.contains("unusual: cells-across-opening"), "{log}");
+    assert!(log.contains(warning) && log.contains("warning I0024: "), "{log}");
     let manifest = manifest(&scratch.path("case.out"));
     let found = &manifest.indicators["cells-across-opening"];
     assert!(found.unusual && (found.value - 2.0).abs() < 0.01 && found.advice.contains("grid.knots"), "{found:?}");

@@ -15,10 +15,16 @@ fn a_run_beyond_a_limit_ends_with_82_unless_its_case_accepts_that() {
     let scratch = Scratch::with_case(&slope(0.0));
     for ranks in [1, 3] {
         let arguments = [&["case.toml", "-o", "out", "--force"][..], &HELD].concat();
-        scratch.mpirun(ranks, &arguments).expect(82).says_once("failed (beyond its limit of 0.1");
+        scratch.mpirun(ranks, &arguments).expect(82).says_once("error I0028: ");
         let found = manifest(&scratch.path("out"));
         let indicator = &found.indicators[NAME];
-        assert!(indicator.failed && !indicator.accepted && indicator.limits == Some([0.0, 0.1]), "{indicator:?}");
+        assert!(
+            indicator.code == "I0028"
+                && indicator.failed
+                && !indicator.accepted
+                && indicator.limits == Some([0.0, 0.1]),
+            "{indicator:?}"
+        );
         assert_eq!(found.exit_code, Some(82));
     }
     // It has come to its end, and is not begun again.
@@ -26,7 +32,7 @@ fn a_run_beyond_a_limit_ends_with_82_unless_its_case_accepts_that() {
     scratch.direct(&again).expect(82);
     assert_eq!(manifest(&scratch.path("out")).summary.steps, 10);
     let accepting = [&["case.toml", "-o", "accepted"][..], &HELD, &ACCEPTING].concat();
-    scratch.direct(&accepting).expect(0).says_once("beyond its limit, which output.accept accepts");
+    scratch.direct(&accepting).expect(0).says_once("(limit: below 10 %, accepted by output.accept)");
     let indicator = &manifest(&scratch.path("accepted")).indicators[NAME];
     assert!(indicator.failed && indicator.accepted, "{indicator:?}");
 }
@@ -35,7 +41,7 @@ fn a_run_beyond_a_limit_ends_with_82_unless_its_case_accepts_that() {
 fn a_check_that_fails_comes_before_an_indicator() {
     let scratch = Scratch::with_case(&slope(0.0));
     let both = [&["case.toml", "-o", "both"][..], &HELD, &CHECKED].concat();
-    scratch.direct(&both).expect(77).says_once("failed (beyond its limit of 0.1");
+    scratch.direct(&both).expect(77).says_once("error I0028: ");
 }
 
 #[test]

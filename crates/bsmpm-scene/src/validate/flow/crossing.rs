@@ -2,7 +2,7 @@
 
 use crate::case::{Acting, Case, Drain, DrainSite, Face, Flow, LoadedLine, Plate, Site};
 use crate::record::Record;
-use crate::report::Report;
+use crate::report::{Report, listed};
 use crate::validate::side::side;
 use crate::validate::site::normal_of;
 use crate::validate::{place, site};
@@ -38,8 +38,8 @@ pub(super) fn check(case: &Case, flow: &Flow, root: &Record, report: &mut Report
     let crossings = all(case, flow, root);
     for (number, one) in crossings.iter().enumerate() {
         for other in &crossings[..number] {
-            if let Some(told) = contradiction(one, other).filter(|_| meet(case, one, other)) {
-                report.error(one.record.origin, &one.record.path, told);
+            if let Some(message) = contradiction(one, other).filter(|_| meet(case, one, other)) {
+                report.error(one.record.origin, &one.record.path, message);
             }
         }
     }
@@ -53,10 +53,6 @@ fn closed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let flows =
         |body: usize| flow.soils[case.bodies[body].material].as_ref().is_some_and(|of| of.permeability.is_some());
     let mut left: Vec<usize> = (0..case.bodies.len()).filter(|&body| flows(body) && case.is_there(body, 0.0)).collect();
-    if flow.drains.is_empty() && !left.is_empty() {
-        report.warn("drain: there is none, and no water leaves the ground; give [[drain]] surface = true, or face");
-        return;
-    }
     let near = 0.5 * case.grid.shortest();
     let touch = |one: usize, other: usize| {
         let [a, b] = [one, other].map(|body| case.bodies[body].region.corners());
@@ -73,9 +69,9 @@ fn closed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         if !flow.drains.iter().any(|drain| places(drain, case).iter().any(is_on)) {
             let all: Vec<String> = joined.iter().map(|body| format!("body.{body}")).collect();
             report.warn(format!(
-                "{}: no drain is on it, nor on permeable ground that it touches: no water leaves it, and excess pressure stays \
-                 there; give [[drain]] surface = true, or along it, or drainage = \"undrained\" if that is meant",
-                all.join(", ")
+                "W0530: no drain lies at {}, so no water leaves this soil and its excess pore pressure remains. Add a \
+                 [[drain]] at its surface, or set `drainage = \"undrained\"`.",
+                listed(&all)
             ));
         }
     }
@@ -129,12 +125,12 @@ fn contradiction(one: &Crossing<'_>, other: &Crossing<'_>) -> Option<String> {
     let name = &other.called;
     match (one.given, other.given) {
         (Some(a), Some(b)) if a != b => Some(format!(
-            "on a part of its surface {name} acts at the same time, and gives another pressure there: the ground would have \
-             one between them, or that of the later face; name parts that do not overlap, or let a stage release one"
+            "E0530: the surface overlaps that of `{name}`, which prescribes another pressure at the same time. \
+             Separate the surfaces, or deactivate one of the drains in a stage."
         )),
         (None, Some(given)) if *given != Given::Seepage => Some(format!(
-            "on a part of its surface {name} acts at the same time, where the pressure is given: what is put in leaves there \
-             at once; name parts that do not overlap, let a stage release one, or give the drain seepage = true"
+            "E0531: the surface overlaps that of drain `{name}`, where the inflow would leave the soil at once. \
+             Separate the surfaces, or give the drain `seepage = true`."
         )),
         _ => None,
     }
@@ -207,9 +203,8 @@ fn lifted(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let rate = inflow.rate.0.iter().map(|row| row.1).fold(0.0, f64::max);
         if let Some((least, material)) = least.filter(|(least, _)| rate > *least) {
             report.warn(format!(
-                "inflow.{number}: {rate:e} m/s are more than material.{} lets through by its weight alone, {least:e} m/s: the \
-                 pressure rises at the surface until all of it goes in, and may lift the ground; give runs_off = true, as of \
-                 rain, or a lower rate",
+                "W0531: inflow.{number}: {rate:e} m/s exceeds the permeability of `{}` ({least:e} m/s), so the \
+                 pressure at the surface may lift the soil. Set `runoff = true` for rain, or reduce the rate.",
                 case.materials[material].name
             ));
         }

@@ -31,21 +31,31 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     if case.grid.dims() != 2 {
         return;
     }
-    let mut told = BTreeMap::new();
+    let mut leaks = BTreeMap::new();
     for body in &case.bodies {
         for edge in body.region.edges(&case.grid).0 {
             let is_on_line = lines::line_of(case, &edge).is_some();
             for (at, (a, b)) in lines::beside(case, &edge) {
                 let Some((one, other)) = flow.soils[a].as_ref().zip(flow.soils[b].as_ref()) else { continue };
-                if let Some(message) = leak(ratio(one, other), is_on_line, at) {
-                    told.entry((a.min(b), a.max(b))).or_insert(message);
+                let ratio = ratio(one, other);
+                if ratio.is_infinite() || (!is_on_line && ratio >= UNLIKE) {
+                    leaks.entry((a.min(b), a.max(b))).or_insert((ratio, at));
                 }
             }
         }
     }
-    for ((a, b), message) in told {
+    for ((a, b), (ratio, at)) in leaks {
         let [a, b] = [a, b].map(|material| &case.materials[material].name);
-        report.warn(format!("material.{a} and material.{b} {message}"));
+        report.warn(match ratio.is_infinite() {
+            true => format!(
+                "W0533: `{a}` and `{b}` meet at {at:.3?} m, and only one has pore-water flow. Its pressure also \
+                 acts within two cells of the other. Give the other at least 20 cells across."
+            ),
+            false => format!(
+                "W0534: `{a}` and `{b}` meet inside cells at {at:.3?} m with a permeability ratio of {ratio:.0}, \
+                 so the tighter soil leaks. Put a grid line at the interface, or use smaller cells."
+            ),
+        });
     }
     thin(case, flow, report);
 }
@@ -68,9 +78,8 @@ fn at_surfaces(case: &Case, report: &mut Report<'_>) {
         let mut places = around.map(|off| std::array::from_fn(|axis| at[axis] + aside(off, axis)));
         if places.any(is_bare) {
             report.warn(format!(
-                "history \"{}\": the flux at {:.3?} is less than a cell from a surface: it is right there as long as points fill the cell \
-                 as at the start; under strains it jumps as rows of points come and go (by a third under a load that takes .3 of \
-                 the height); take a place more than a cell inside, or \"water-outflow\" of the drain for what crosses",
+                "W0532: history `{}`: {:.3?} m is less than a cell from a surface, where the flux jumps as the \
+                 soil deforms. Move it inside, or record \"water-outflow\" of the drain.",
                 history.name,
                 &at[..grid.dims()]
             ));
@@ -82,7 +91,7 @@ fn at_surfaces(case: &Case, report: &mut Report<'_>) {
 fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let cell = case.grid.shortest();
     let flows = |body: &Body| flow.soils[body.material].as_ref().is_some_and(|soil| soil.permeability.is_some());
-    let mut told: BTreeMap<Option<usize>, (f64, [f64; 2])> = BTreeMap::new();
+    let mut walls: BTreeMap<Option<usize>, (f64, [f64; 2])> = BTreeMap::new();
     for t in std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at)) {
         let there: Vec<&Body> =
             (0..case.bodies.len()).filter(|k| case.is_there(*k, t)).map(|k| &case.bodies[k]).collect();
@@ -100,7 +109,7 @@ fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
                 let met = far.find(|far| flows_at(away(*far))).filter(|far| beyond(&case.grid, away(*far)).is_none());
                 if let Some(far) = met {
                     let wall = at(beside).next().map(|body| body.material);
-                    let least = told.entry(wall).or_insert((far, start));
+                    let least = walls.entry(wall).or_insert((far, start));
                     if far < least.0 {
                         *least = (far, start);
                     }
@@ -108,15 +117,14 @@ fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
             }
         }
     }
-    for (wall, (far, at)) in told {
+    for (wall, (far, at)) in walls {
         let what = match wall {
-            Some(material) => format!("material.{}: a wall of it", case.materials[material].name),
-            None => "body: a gap".into(),
+            Some(material) => format!("wall of `{}`", case.materials[material].name),
+            None => "gap".into(),
         };
         report.warn(format!(
-            "{what} between bodies in which water flows, first at {at:.3?}, is about {far:.1} cells wide: the pressure's functions \
-             reach from one side to the other, and water goes through as if it were soil; less than {REACH} cells hold none \
-             back: make it wider, or the cells smaller"
+            "W0535: the {what} between permeable bodies at {at:.3?} m is {far:.1} cells wide, so water passes as \
+             through soil. Make it at least {REACH} cells wide, or reduce `grid.cell`."
         ));
     }
 }
@@ -130,25 +138,6 @@ fn places_along(case: &Case, edge: &Edge) -> impl Iterator<Item = [f64; 2]> + us
         let y = if edge.is_along(1) { edge.a[1] + part * (edge.b[1] - edge.a[1]) } else { edge.y(x) };
         [lower[0] + x, lower[1] + y]
     })
-}
-
-/// What two soils do to the water where they meet, if their permeabilities have this ratio.
-fn leak(ratio: f64, is_on_line: bool, at: [f64; 2]) -> Option<String> {
-    if ratio.is_infinite() {
-        return Some(format!(
-            "meet at {at:.3?}, and water flows in one of them only: its pressure goes on into the other, which drains or swells \
-             over a cell or two there (water from below lifted a layer of 4, 8, 20 cells by 40, 20, 8 % too much, one that is \
-             cut inside cells lets water through); take many cells across the other one"
-        ));
-    }
-    let told = || {
-        format!(
-            "meet inside cells, first at {at:.3?}, one {ratio:.3e} times as permeable as the other: what is tight leaks there (a \
-             layer of one cell let through 1.7 times too much at 1 : 10, ten times at 1 : 100; of two cells 1.2 and 1.8 times); \
-             where they meet along an axis put a grid line there, else give what is tight many cells, and compare two sizes"
-        )
-    };
-    (!is_on_line && ratio >= UNLIKE).then(told)
 }
 
 /// How many times as permeable one of two soils is as the other, along the axis in which they differ most; without end

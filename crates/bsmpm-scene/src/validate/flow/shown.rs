@@ -12,7 +12,6 @@ use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::water::backward::LONGEST;
 use bsmpm::water::flow::{Course, Given, Motion, Soil};
 
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
@@ -31,11 +30,10 @@ const LARGE: f64 = 0.1;
 const ENOUGH: f64 = 1e-2;
 
 /// What a factor of safety leaves out.
-pub const HELD_WATER: &str = "pore pressures stay as they are at that time; those that shearing makes where it is too \
-    fast to drain are not in it, and of soft clay the factor is too high by them: hold it against that of drainage = \
-    \"undrained\" (bsmpm fos --undrained)";
+pub const HELD_WATER: &str = "W0548: pore pressures stay constant during the strength reduction, so the factor of \
+                              safety of soft clay may be too high. Compare it with that of `bsmpm fos --undrained`.";
 
-/// Load over stiffness up to which ground one cell across was shown to be right; under .5 runs ended early.
+/// Load over stiffness up to which ground one cell across was shown to be right; under 0.5 runs ended early.
 const SHOWN_NARROW: f64 = 0.2;
 
 /// What the whole case says of a flow: refusals of what is not shown to be right with it.
@@ -44,18 +42,26 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     let Some(flow) = &case.flow else {
         let of_flow = case.output.fields.iter().find(|field| field.is_of_flow());
         if let (Some(field), Some(output)) = (of_flow, root.record("output")) {
-            output.error("fields", format!("no water flows: there is no \"{field}\""), report);
+            let message = format!(
+                "E0501: no material has pore-water flow, so there is no \"{field}\". Remove it, or set `drainage = \
+                 \"coupled\"` with `porosity` and `permeability`."
+            );
+            output.error("fields", message, report);
         }
         if let Some(analysis) = root.record("analysis").filter(|_| consolidates) {
-            let message = "no water flows: give a material drainage = \"coupled\" (or \"undrained\"), or take \
-                           \"quasi-static\"";
+            let message = "E0501: no material has pore-water flow, so nothing consolidates. Set `drainage = \
+                           \"coupled\"` with `porosity` and `permeability`, or use \"quasi-static\".";
             analysis.error("type", message, report);
         }
         return;
     };
     let flows = matches!(case.analysis.kind, AnalysisType::Consolidation | AnalysisType::Dynamic);
     if let Some(analysis) = root.record("analysis").filter(|_| !flows) {
-        let message = "water flows in real time, with balances of its own: take \"consolidation\" or \"dynamic\"";
+        let message = format!(
+            "E0502: \"{}\" has no pore-water flow, but a material is \"coupled\" or \"undrained\". Use \
+             \"consolidation\" or \"dynamic\", or change `drainage`.",
+            case.analysis.kind.word()
+        );
         analysis.error("type", message, report);
     }
     discretised(case, root, report);
@@ -80,9 +86,8 @@ fn narrow(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let retention = soil.as_ref().and_then(|soil| soil.retention.as_ref());
         let Some(entry) = retention.map(|of| of.curve.entry()).filter(|entry| NARROW * *entry < cell) else { continue };
         report.warn(format!(
-            "material.{}.retention: air enters at a suction of {entry:e} m, {:.0} times less than a cell: pores are full or \
-             empty, and iterations follow that badly (a column that drained took 14 times as many at 1/50, and ended early at \
-             1/100 and below, its steps cut to 1/1024); a curve that begins at a tenth of a cell empties it as well",
+            "W0540: material.{}.retention: the air-entry suction head of {entry:.2e} m is {:.0} times less than a \
+             cell (limit {NARROW}), so steps may fail. Use a curve with an air entry of 0.1 cells.",
             named.name,
             cell / entry
         ));
@@ -101,8 +106,8 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let soft = case.solver.background < 0.5 * ENOUGH && case.analysis.regime == Regime::QuasiStatic;
     if is_loose && soft && load >= LARGE {
         report.warn(format!(
-            "solver.background: {:e}: a load of {load:.2} of the soil's stiffness takes much of its height, and the points at \
-             its surface may drift apart there: settlements off by 10 %, or an early end; shown to be right with {ENOUGH:e}",
+            "W0541: solver.background: {:e} is too low for a load of {load:.2} times the oedometric stiffness: \
+             settlements may be wrong by 10 %. Set `solver.background = {ENOUGH}`.",
             case.solver.background
         ));
     }
@@ -110,8 +115,8 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     if averages && load > SHOWN_NARROW && case.grid.axes.iter().take(case.grid.dims() - 1).any(|axis| axis.cells() == 1)
     {
         report.warn(format!(
-            "grid: one cell across under a load of {load:.2} of the soil's stiffness: averaged dilations leave such ground a \
-             way to go sideways, and the run may end early; give it two cells (or [stabilisation] method = \"none\")"
+            "W0542: grid: soil one cell wide can move sideways under a load of {load:.2} times its oedometric \
+             stiffness. Use two cells, or `stabilisation.method = \"none\"`."
         ));
     }
 }
@@ -119,14 +124,16 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 /// Splines, points, averages and iterations that carry the pressure.
 fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some(grid) = root.record("grid").filter(|_| case.grid.order == 1) {
-        let message = "\"linear\" splines leave the pore pressure no gradient: take \"quadratic\"";
+        let message = "E0541: \"linear\" splines give no usable gradient of the pore pressure, which drives the \
+                       flow. Use \"quadratic\".";
         grid.error("degree", message, report);
     }
     let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
         if case.grid.order == 3 && few(body) {
             let message = format!(
-                "{} with cubic splines: the pore pressure oscillates where a surface cuts cells; allowed: at least {POINTS_OF_CUBIC}",
+                "E0542: {} material points along each axis of a cell are too few for cubic splines: the pore pressure \
+                 oscillates at surfaces. Use at least {POINTS_OF_CUBIC}.",
                 body.points_per_cell
             );
             record.error("points_per_cell", message, report);
@@ -134,23 +141,15 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
     let shown = matches!(case.stabilisation, Stabilisation::None | Stabilisation::ConsistentFBar);
     if let Some(record) = root.record("stabilisation").filter(|_| !shown) {
-        let message = format!(
-            "\"{}\" is not shown to be right with water that flows: take \"consistent-f-bar\"",
-            case.stabilisation.word()
-        );
-        record.error("method", message, report);
+        let method = format!("\"{}\"", case.stabilisation.word());
+        record.error("method", not_available(&method, "Use \"consistent-f-bar\"."), report);
     }
     let Some(solver) = root.record("solver") else { return };
     if case.solver.nonlinear == crate::Nonlinear::Broyden {
-        let message = "\"broyden\" knows no pressures of water that flows: take \"auto\"";
-        solver.error("nonlinear", message, report);
+        solver.error("nonlinear", not_available("\"broyden\"", "Use \"auto\"."), report);
     }
     if case.solver.quadrature == Quadrature::Fitted {
-        solver.error(
-            "quadrature",
-            "\"fitted\" is not shown to be right with water that flows: take \"points\"",
-            report,
-        );
+        solver.error("quadrature", not_available("\"fitted\"", "Use \"points\"."), report);
     }
 }
 
@@ -162,58 +161,62 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
         let Some(law) = record.word::<LawName>("model") else { continue };
         if flow.soils[number].is_none() && !drains_where_they_meet(case, flow, number) {
             report.warn(format!(
-                "material.{name}: drainage = \"hydrostatic\" beside soil in which water flows: nothing crosses from that soil into it \
-                 but through a [[drain]] where they meet, and there is none"
+                "W0543: material.{name}: it is \"hydrostatic\" next to soil with pore-water flow, and no water \
+                 crosses between them. Add a [[drain]] at the interface, or set `drainage = \"coupled\"`."
             ));
         }
-        let why = match law {
-            LawName::SensitiveClay => "is a law of clay without drainage, of total stress",
-            LawName::MuI => "is a law of dry grains that flow",
-            LawName::CamClay => {
-                "has a stiffness that follows the effective pressure, which the pressures' system does not"
-            }
-            LawName::Hencky | LawName::MohrCoulomb | LawName::Tresca => continue,
-            LawName::DruckerPrager | LawName::VonMises | LawName::Softening => continue,
-        };
-        record.error("model", format!("\"{law}\" {why}: it is not shown to be right with water that flows"), report);
+        let is_excluded = matches!(law, LawName::SensitiveClay | LawName::MuI | LawName::CamClay);
+        if is_excluded {
+            let instead = "Use another model for this soil, for example \"mohr-coulomb\".";
+            record.error("model", not_available(&format!("\"{law}\""), instead), report);
+        }
     }
     for (_, record) in root.named("material") {
         if record.word::<bsmpm::material::Separation>("separation") == Some(bsmpm::material::Separation::Closing) {
-            record.error("separation", "gaps that close are not shown to be right with water that flows", report);
+            record.error("separation", not_available("\"closing\"", "Remove the key."), report);
         }
     }
 }
 
-fn not_shown(what: &str) -> String {
-    format!("{what} not shown to be right with water that flows")
+/// Message of what cannot be combined with flowing water, with an instruction what to do instead.
+fn not_available(what: &str, instead: &str) -> String {
+    format!(
+        "E0540: {what} is not available with pore-water flow (`drainage` is \"coupled\" or \"undrained\"). {instead}"
+    )
 }
 
 /// What a stage changes.
 fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report<'_>) {
     if record.gives("remove") && case.analysis.regime != Regime::QuasiStatic {
-        record.error("remove", not_shown("bodies that are removed while all moves are"), report);
+        let message =
+            not_available("removal of bodies in a dynamic analysis", "Remove them in a \"consolidation\" analysis.");
+        record.error("remove", message, report);
     } else if case.stages.get(number).is_some_and(|stage| !stage.remove.is_empty() && !drains_what_is_bare(case, stage))
     {
         report.warn(format!(
-            "stage.{number}.remove: what is laid bare lets no water through, as the ground's surface without a drain; a [[drain]] \
-             along it drains it, from the start of the run on, or as the stage applies it"
+            "W0544: stage.{number}.remove: the surface exposed by the excavation has no drain, so it is \
+             impermeable. Add a [[drain]] along it, and list its name in `activate` of this stage."
         ));
     }
     case.stages.get(number).into_iter().for_each(|stage| goes(case, (number, stage), report));
     if record.gives("add") && case.analysis.regime != Regime::QuasiStatic {
-        record.error("add", not_shown("bodies that are placed while all moves are"), report);
+        let message =
+            not_available("placement of bodies in a dynamic analysis", "Add them in a \"consolidation\" analysis.");
+        record.error("add", message, report);
     } else if let Some(stage) = case.stages.get(number) {
         placed(case, (number, stage), report);
     }
-    let changes =
-        [("boundary", "faces that change are"), ("strength_reduction", "strength that changes while water flows is")];
-    for (key, what) in changes.into_iter().filter(|(key, _)| record.gives(key)) {
-        record.error(key, not_shown(what), report);
-    }
-    if record.gives("materials") {
-        let instead = "what is applied faster than \"coupled\" soil drains, it carries as without drainage; laws of \
-                       total stress can be exchanged in a \"quasi-static\" analysis";
-        record.error("materials", format!("{}: {instead}", not_shown("laws that are exchanged are")), report);
+    let changes = [
+        ("boundary", "a change of the boundary", "Remove it, and give the boundary of all stages in [boundary]."),
+        (
+            "strength_reduction",
+            "a strength reduction in a stage",
+            "Reduce the strength at the end: `bsmpm fos --stage end`.",
+        ),
+        ("materials", "a change of material", "Remove it: fast loading of \"coupled\" soil is undrained anyway."),
+    ];
+    for (key, what, instead) in changes.into_iter().filter(|(key, ..)| record.gives(key)) {
+        record.error(key, not_available(what, instead), report);
     }
 }
 
@@ -228,8 +231,8 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
         };
         if !flow.drains.iter().enumerate().any(drains) {
             report.warn(format!(
-                "stage.{number}.add: there is no drain on body.{body}: its surface lets no water through; a [[drain]] along it \
-                 drains it, which the stage applies"
+                "W0544: stage.{number}.add: the added body.{body} has no drain, so its surface is impermeable. Add \
+                 a [[drain]] along it, and list its name in `activate` of this stage."
             ));
         }
     }
@@ -242,8 +245,8 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
         let stays = [case.just_before(stage.at), stage.at].into_iter().all(|t| acts(drain, t));
         if stays && places(of, case).iter().any(covers) {
             report.warn(format!(
-                "stage.{number}.add: drain.{drain} goes on draining under what is placed, as a blanket does: where there is \
-                 none, let the stage release it and apply others"
+                "W0545: stage.{number}.add: drain.{drain} keeps draining below the added soil, like a drainage \
+                 blanket. If there is no blanket, list the drain in `deactivate` of this stage."
             ));
         }
     }
@@ -261,8 +264,8 @@ fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) 
         if acts && matches!(of.site, DrainSite::Lines(_) | DrainSite::Plate(_)) && places(of, case).iter().all(is_gone)
         {
             report.warn(format!(
-                "stage.{number}.remove: drain.{drain} is on the surface of what is removed, and goes with it; what it leaves \
-                 drains by another [[drain]] along it, which the stage applies"
+                "W0546: stage.{number}.remove: drain.{drain} lies on the removed soil and is removed with it. Add \
+                 a [[drain]] along the new surface, and list its name in `activate` of this stage."
             ));
         }
     }
@@ -287,40 +290,47 @@ fn drains_where_they_meet(case: &Case, flow: &Flow, material: usize) -> bool {
 /// What acts on the bodies.
 fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some(rigid) = root.records("rigid").first() {
-        report.error(rigid.origin, &rigid.path, not_shown("rigid bodies are"));
+        let message = not_available("a rigid body", "Use a [footing] or a [[prescribed]] displacement.");
+        report.error(rigid.origin, &rigid.path, message);
     }
     for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
         let side = side.word();
         if let Some(boundary) = root.record("boundary") {
             match support {
                 Support::Fixed | Support::Roller | Support::Free => {}
-                Support::Contact => boundary.error(side, not_shown("faces in contact are"), report),
-                Support::Absorbing | Support::FreeField | Support::Outflow => {
-                    boundary.error(side, not_shown(&format!("\"{support}\" is")), report);
+                Support::Contact | Support::Absorbing | Support::FreeField | Support::Outflow => {
+                    let message = not_available(&format!("\"{support}\""), "Use \"roller\" or \"fixed\".");
+                    boundary.error(side, message, report);
                 }
             }
         }
     }
-    let rubs =
+    let have_contact =
         case.footing.iter().map(|of| of.contact.is_some()).chain(case.prescribed.iter().map(|of| of.contact.is_some()));
     let strips = root.records("footing").iter().chain(root.records("prescribed"));
-    for (_, record) in rubs.zip(strips).filter(|(rubs, _)| *rubs) {
-        report.error(record.origin, &record.path, not_shown("strips that rub and let go are"));
+    for (_, record) in have_contact.zip(strips).filter(|(has_contact, _)| *has_contact) {
+        let message = not_available(
+            "frictional contact of a footing",
+            "Use \"rough\" or \"smooth\" (footing), or \"all\" ([[prescribed]]).",
+        );
+        report.error(record.origin, &record.path, message);
     }
     root.records("stage").iter().enumerate().for_each(|stage| of_stage(case, stage, report));
     if let Some(record) = root.record("gravity").filter(|record| record.number("ramp").is_some_and(|ramp| ramp > 0.0)) {
-        record.error("ramp", not_shown("gravity that grows is"), report);
+        let message = not_available("gravity that increases over a ramp", "Remove `ramp`.");
+        record.error("ramp", message, report);
     }
     if case.settles || case.initial == Some(Initial::Elastic) {
         for load in case.sudden_loads() {
             report.warn(format!(
-                "{load}: acts in full from time 0, and the stress at the start bears it without excess pressure: nothing \
-                 consolidates under it; give it a ramp"
+                "W0547: {load}: it acts in full from time 0 and is part of the initial stress, so no soil \
+                 consolidates under it. Apply it with `ramp`."
             ));
         }
     }
     if let Some(shaking) = root.record("shaking") {
-        report.error(shaking.origin, &shaking.path, not_shown("ground that shakes is"));
+        let message = not_available("[shaking]", "Remove it, or use \"hydrostatic\" soil with undrained strengths.");
+        report.error(shaking.origin, &shaking.path, message);
     }
 }
 
@@ -329,10 +339,10 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
     let Some(reduction) = root.record("strength_reduction") else { return };
     let unloaded = reduction.flag("unloaded") == Some(true);
     if reduction.gives("stage") && flow.at_rest == Motion::Held && !unloaded {
-        report.warn(format!("strength_reduction.stage: {HELD_WATER}"));
+        report.warn(HELD_WATER);
     } else if !reduction.gives("stage") {
-        let message = "strength that is reduced from the start on is not shown to be right with water that flows: give \
-                       stage = \"end\" (bsmpm fos --stage end), of the pore pressures of that time, which then stay";
+        let message = "E0543: with pore-water flow the strength cannot be reduced from the start. Set `stage = \
+                       \"end\"`, which keeps the pore pressures of that time (`bsmpm fos --stage end`).";
         report.error(reduction.origin, &reduction.path, message);
     }
 }
@@ -341,14 +351,16 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
 fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some((growth, _)) = case.analysis.growth.filter(|(growth, _)| *growth > MOST_GROWTH) {
         report.warn(format!(
-            "analysis.growth: {growth}: the error of a step grows with its length, what consolidates goes beyond its end (by .1, 1.2 % \
-             with 1.25, 1.5), and steps longer than {LONGEST} times the one before are of first order; shown to be right up to \
-             {MOST_GROWTH}"
+            "W0549: analysis.growth: {growth} exceeds {MOST_GROWTH}, so steps become inaccurate and consolidation \
+             overshoots. Set `growth` to {MOST_GROWTH} or less."
         ));
     }
     let alike = case.analysis.growth.is_none() && root.record("analysis").is_some_and(|record| record.gives("dt_max"));
     if alike {
-        report.warn("analysis.dt_max: without growth steps are alike; it does nothing");
+        report.warn(
+            "W0550: analysis.dt_max: it has no effect without `growth`, because all steps are equal. Add `growth`, \
+             or remove `dt_max`.",
+        );
     }
 }
 
@@ -356,8 +368,8 @@ fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
 fn weighed(case: &Case, report: &mut Report<'_>) {
     if case.gravity.is_some() && case.water.is_none() {
         report.warn(
-            "water: there is none that is still, and the pore pressure at the start is zero everywhere: what the water weighs \
-             has to build up in time; give [water] level",
+            "W0551: water: there is gravity but no water table, so the pore pressure is zero at the start and only \
+             develops with time. Give `water.level`.",
         );
     }
 }
@@ -378,14 +390,13 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let end = case.analysis.end;
     let dt = case.analysis.growth.map_or(case.analysis.dt, |(_, longest)| longest.min(end));
     // What has suction loses it in however many steps.
-    let (time, told) = if flow.retains() { (end, "the run") } else { (dt, "a step") };
-    let way = most * time / cell;
+    let (time, period) = if flow.retains() { (end, "the run") } else { (dt, "a step") };
+    let height = most * time / cell;
     for (number, drain) in flow.drains.iter().enumerate().filter(|(_, drain)| drain.given == Given::StillWater) {
-        if way > FILM && places(drain, case).iter().any(dry) {
+        if height > FILM && places(drain, case).iter().any(dry) {
             report.warn(format!(
-                "drain.{number}: above the water table it holds the pressure of the air, and the ground there is fed as by \
-                 a pond, by up to {way:.1} cells of water in {told}: give seepage = true (and soils a retention), or \
-                 head where a pond stands"
+                "W0552: drain.{number}: above the water table it acts like a pond and feeds up to {height:.1} \
+                 cells of water into the soil in {period}. Set `seepage = true`, or give the pond's `head`."
             ));
         }
     }
@@ -410,9 +421,8 @@ fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let most = above.fold(0.0, f64::max);
         if most > cell {
             report.warn(format!(
-                "material.{}: up to {most:.2} m of it are above the water table, its pores stay full, and suction of up to \
-                 {:.0} kPa, as of water that hangs there, holds it together without limit: a slope of it had a factor of safety \
-                 11 % above that under the table alone; give it a retention, or drainage = \"hydrostatic\" where it is dry",
+                "W0553: material.{}: its upper {most:.2} m are above the water table but stay saturated; suction \
+                 up to {:.0} kPa increases the strength. Add `retention`, or use \"hydrostatic\" for dry soil.",
                 named.name,
                 1e-3 * most * water.unit_weight
             ));
@@ -441,9 +451,8 @@ fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let most = places(drain, case).iter().map(above).fold(0.0, f64::max);
         if most > 0.5 * cell {
             report.warn(format!(
-                "drain.{number}: the head is up to {most:.3} m above the surface, and the water above it does not press on the \
-                 ground: where it stands there give [water] a level (level_path, line, line_path) up to it, and leave \
-                 head out; head is that of a pipe or well"
+                "W0554: drain.{number}: the head is up to {most:.3} m above the surface, but no water weighs on \
+                 the surface. For free water give `water.level` instead of `head`."
             ));
         }
     }

@@ -1,0 +1,165 @@
+//! Slips that leave no doubt what is meant: a misspelt key, one pair of brackets for two. Each is an error; the document
+//! then gets what is meant, so that the rest of the case is read as if it were right, and nothing else is reported that
+//! only follows from the slip.
+
+use crate::document::{DocumentTable, Node, Value};
+use crate::nearest::nearest;
+use crate::record::join;
+use crate::report::{Report, shortened};
+use crate::schema::{Key, Kind, Presence, ROOT, Table, answer};
+use bsmpm_messages::code_of;
+
+/// Unknown keys of a table that are reported at most.
+const MOST_UNKNOWN: usize = 50;
+
+/// Reports the slips of the whole document and puts right what is meant.
+pub(crate) fn mend(document: &mut DocumentTable, report: &mut Report<'_>) {
+    in_table(document, &ROOT, "", report);
+}
+
+fn in_table(written: &mut DocumentTable, table: &'static Table, path: &str, report: &mut Report<'_>) {
+    rename_misspelt(written, table, path, report);
+    for entry in &mut written.entries {
+        if let Some(key) = table.key(&entry.key) {
+            in_value(&mut entry.node, &key.kind, &join(path, &entry.key), report);
+        }
+    }
+}
+
+/// Gives misspelt keys the name that is meant, if neither it nor a rival of it is given.
+fn rename_misspelt(written: &mut DocumentTable, table: &'static Table, path: &str, report: &mut Report<'_>) {
+    let mut given: Vec<String> = written.entries.iter().map(|entry| entry.key.clone()).collect();
+    let is_unknown = |key: &str| table.key(key).is_none();
+    for entry in written.entries.iter_mut().filter(|entry| is_unknown(&entry.key)).take(MOST_UNKNOWN) {
+        let Some(meant) = meant(table, &entry.key) else { continue };
+        let is_given = |name: &str| given.iter().any(|other| other == name);
+        if is_given(meant) || table.rivals(meant).any(is_given) {
+            continue;
+        }
+        let assumed = join(path, meant);
+        report.slip(entry.origin, &join(path, &entry.key), unknown_key(table, &entry.key), &assumed);
+        given.push(meant.to_owned());
+        meant.clone_into(&mut entry.key);
+    }
+}
+
+/// The key of a table that an unknown name most likely means; of the symbols and names of other programs those that
+/// stand for a value.
+fn meant(table: &'static Table, name: &str) -> Option<&'static str> {
+    if answer(table, name).is_some() {
+        let is_value = |key: &Key| !matches!(key.kind, Kind::Table(_) | Kind::Named(_) | Kind::Tables(_));
+        return answered(table, name).into_iter().find(|name| table.key(name).is_some_and(is_value));
+    }
+    nearest(name, names(table))
+}
+
+/// Keys of a table that the answer to an unknown name mentions.
+pub(crate) fn answered(table: &'static Table, name: &str) -> Vec<&'static str> {
+    let text = answer(table, name).unwrap_or_default();
+    let quoted = text.split('`').skip(1).step_by(2);
+    let bare = quoted.map(|word| word.trim_matches(['[', ']']).split('.').next().unwrap_or(word));
+    bare.filter(|word| table.key(word).is_some()).collect()
+}
+
+/// Names of a table's keys that may be written.
+fn names(table: &'static Table) -> impl Iterator<Item = &'static str> {
+    table.keys.iter().filter(|key| key.presence != Presence::Retired).map(|key| key.name)
+}
+
+/// Reports the keys of a table that it does not have.
+pub(crate) fn report_unknown(table: &'static Table, written: &DocumentTable, path: &str, report: &mut Report<'_>) {
+    let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
+    for entry in unknown.by_ref().take(MOST_UNKNOWN) {
+        let meant: Vec<String> = answered(table, &entry.key).iter().map(|name| join(path, name)).collect();
+        report.about(entry.origin, &join(path, &entry.key), unknown_key(table, &entry.key), meant);
+    }
+    if let Some(entry) = unknown.next() {
+        let message = format!(
+            "E0009: {} more unknown keys follow here and are not listed. Correct those above first.",
+            unknown.count() + 1
+        );
+        report.error(entry.origin, path, message);
+    }
+}
+
+/// What is wrong with an unknown key, and what is meant.
+fn unknown_key(table: &'static Table, key: &str) -> String {
+    if let Some(answer) = answer(table, key) {
+        return match code_of(answer) {
+            Some(_) => answer.to_owned(),
+            None => format!("E0011: the key `{}` does not exist in {}. {answer}", shortened(key), table.header),
+        };
+    }
+    let elsewhere = ROOT.all().into_iter().find(|other| other.key(key).is_some());
+    let hint = match (nearest(key, names(table)), elsewhere) {
+        (Some(name), _) => format!("; did you mean `{name}`?"),
+        (None, Some(other)) => format!("; it belongs to {}.", other.header),
+        (None, None) => ".".to_owned(),
+    };
+    let known: Vec<&str> = names(table).collect();
+    format!(
+        "E0011: the key `{}` does not exist in {}{hint} Known keys: {}.",
+        shortened(key),
+        table.header,
+        known.join(", ")
+    )
+}
+
+fn in_value(node: &mut Node, kind: &'static Kind, path: &str, report: &mut Report<'_>) {
+    match kind {
+        Kind::Tables(table) => {
+            list_single_table(node, table, path, report);
+            let Value::List(items) = &mut node.value else { return };
+            for (number, item) in items.iter_mut().enumerate() {
+                if let Value::Table(written) = &mut item.value {
+                    in_table(written, table, &join(path, &number.to_string()), report);
+                }
+            }
+        }
+        Kind::Named(table) => {
+            let Value::Table(named) = &mut node.value else { return };
+            for entry in &mut named.entries {
+                let path = join(path, &entry.key);
+                take_only_table(&mut entry.node, table, &path, report);
+                if let Value::Table(written) = &mut entry.node.value {
+                    in_table(written, table, &path, report);
+                }
+            }
+        }
+        Kind::Table(table) => {
+            take_only_table(node, table, path, report);
+            if let Value::Table(written) = &mut node.value {
+                in_table(written, table, path, report);
+            }
+        }
+        _ => {
+            if let (Some(table), Value::Table(written)) = (kind.table(), &mut node.value) {
+                in_table(written, table, path, report);
+            }
+        }
+    }
+}
+
+/// `[body]` for `[[body]]`: the one table becomes a list.
+fn list_single_table(node: &mut Node, table: &Table, path: &str, report: &mut Report<'_>) {
+    let Value::Table(written) = &mut node.value else { return };
+    let name = path.rsplit('.').next().unwrap_or(path);
+    let message = format!(
+        "E0047: expected a list of tables, {}, found a table. Write two pairs of brackets, [[{}]], also for a single one.",
+        table.header,
+        if table.header.starts_with("[[") { table.header.trim_matches(['[', ']']) } else { name }
+    );
+    report.error(node.origin, path, message);
+    let item = Node { origin: node.origin, value: Value::Table(std::mem::take(written)) };
+    node.value = Value::List(vec![item]);
+}
+
+/// `[[grid]]` for `[grid]`: the only table of the list is the one that is meant.
+fn take_only_table(node: &mut Node, table: &Table, path: &str, report: &mut Report<'_>) {
+    let Value::List(items) = &mut node.value else { return };
+    let [Node { value: Value::Table(written), .. }] = &mut items[..] else { return };
+    let message =
+        format!("E0048: expected one table, {}, found a list of tables. Write one pair of brackets.", table.header);
+    report.error(node.origin, path, message);
+    node.value = Value::Table(std::mem::take(written));
+}

@@ -1,0 +1,61 @@
+//! Whether the physics is plausible: values that look like another unit, gravity that does not point down, bodies,
+//! histories and loads that are out of scale. Each is a warning with its probable cause. Who writes a value with its unit
+//! says that it is meant.
+
+mod direction;
+mod place;
+mod support;
+mod value;
+
+use crate::case::Case;
+use crate::record::Record;
+use crate::report::Report;
+
+/// Warns of what is possible, but probably not meant.
+pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+    let scale = Scale::of(case);
+    for (number, (_, material)) in root.named("material").iter().enumerate() {
+        if case.is_followed(number) {
+            value::material(material, &scale, report);
+        }
+    }
+    value::loads(root, &scale, report);
+    direction::gravity(case, report);
+    place::bodies(case, root, report);
+    place::histories(case, root, report);
+    support::bodies(case, root, report);
+}
+
+/// What the stresses of a case are like.
+struct Scale {
+    /// m  height of all bodies together
+    height: f64,
+    /// Pa  weight of the heaviest material over that height, or the largest load if there is more of it
+    stress: Option<f64>,
+}
+
+impl Scale {
+    fn of(case: &Case) -> Self {
+        let up = case.grid.dims() - 1;
+        let corners = || case.bodies.iter().map(|body| body.region.corners());
+        let lowest = corners().map(|[lower, _]| lower[up]).fold(f64::INFINITY, f64::min);
+        let highest = corners().map(|[_, upper]| upper[up]).fold(f64::NEG_INFINITY, f64::max);
+        let height = highest - lowest;
+        let size = case.gravity.as_ref().map_or(0.0, |gravity| length(gravity.acceleration));
+        let density = case.bodies.iter().filter_map(|body| case.materials[body.material].density).fold(0.0, f64::max);
+        let load = case.tractions.iter().map(|traction| traction.largest()).fold(0.0, f64::max);
+        let stress = (density * size * height).max(load);
+        Self { height, stress: (stress > 0.0).then_some(stress) }
+    }
+}
+
+impl Scale {
+    /// The stress in words, if it is known.
+    fn shown(&self) -> String {
+        self.stress.map_or(String::new(), |stress| format!(" ({:.3} kPa)", 1e-3 * stress))
+    }
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|along| along * along).sum::<f64>().sqrt()
+}

@@ -1,0 +1,125 @@
+//! Values without a unit that look like another one: kPa typed as Pa, radians as degrees.
+
+use super::Scale;
+use crate::record::Record;
+use crate::report::Report;
+
+/// Young's modulus (Pa) above which it is that of some soil.
+const STIFF: f64 = 1e5;
+/// The same below which it is that of none.
+const SOFT: f64 = 1e3;
+/// Stress of the case over Young's modulus from which on soil would be squeezed by parts of its height.
+const SQUEEZED: f64 = 0.05;
+/// Strength (Pa) above which it is that of some soil.
+const STRONG: f64 = 100.0;
+/// Strength over the stress of the case below which it carries nothing of it.
+const NOTHING: f64 = 1e-3;
+/// Young's modulus over strength above which one of them is out of scale, where no stress is known.
+const RIGID: f64 = 1e5;
+/// Friction angle (degrees) below which it is that of no soil; radians are less than this.
+const FLAT: f64 = 2.0;
+/// Dilation angle (degrees) below which it may be in radians: that of 45 degrees.
+const BARELY: f64 = 0.8;
+/// Load over the stress of the case below which it changes nothing.
+const NO_LOAD: f64 = 1e-3;
+/// Pressure (Pa) above which it is no slip.
+const LOAD: f64 = 1e3;
+/// Force over the weight of a square of the case's height below which it changes nothing.
+const NO_FORCE: f64 = 1e-4;
+
+/// The value of a key, or of its profile, if it is written without a unit.
+fn bare(record: &Record, key: &str) -> Option<f64> {
+    if !record.gives(key) {
+        return None;
+    }
+    let (owner, key) = record.record(key).map_or((record, key), |profile| (profile, "value"));
+    owner.number(key).filter(|value| *value != 0.0 && !owner.has_unit(key))
+}
+
+/// Stiffness, strength and angles of a material.
+pub(super) fn material(record: &Record, scale: &Scale, report: &mut Report<'_>) {
+    if let Some(young) = bare(record, "young").filter(|young| is_soft(*young, scale)) {
+        report.warn(format!(
+            "W0101: {}: {young} Pa is {} kPa, too soft for the stress in this case{}. If kPa are meant, write \"{young} kPa\"; \
+             otherwise write \"{young} Pa\".",
+            record.path_of("young"),
+            1e-3 * young,
+            scale.shown()
+        ));
+    }
+    for key in ["cohesion", "yield_stress", "residual_cohesion"] {
+        let Some(strength) = bare(record, key).filter(|strength| is_weak(*strength, record, scale)) else { continue };
+        report.warn(format!(
+            "W0102: {}: {strength} Pa is {} kPa, negligible against the stress in this case{}. If kPa are meant, write \
+             \"{strength} kPa\"; otherwise write \"{strength} Pa\".",
+            record.path_of(key),
+            1e-3 * strength,
+            scale.shown()
+        ));
+    }
+    for (key, least) in [
+        ("friction_angle", FLAT),
+        ("residual_friction_angle", FLAT),
+        ("dilation_angle", BARELY),
+        ("residual_dilation_angle", BARELY),
+    ] {
+        let Some(angle) = bare(record, key).filter(|angle| angle.abs() < least) else { continue };
+        report.warn(format!(
+            "W0103: {}: {angle} degrees look like radians ({:.3} degrees). Angles without a unit are in degrees. Write \
+             \"{angle} rad\" or \"{angle} deg\".",
+            record.path_of(key),
+            angle.to_degrees()
+        ));
+    }
+}
+
+/// Whether soil with this modulus (Pa) would not stand the case.
+fn is_soft(young: f64, scale: &Scale) -> bool {
+    let is_squeezed = scale.stress.is_some_and(|stress| stress > SQUEEZED * young);
+    young < SOFT || young <= STIFF && is_squeezed
+}
+
+/// Whether a strength (Pa) is nothing beside the stress of the case or, where that is not known, beside the modulus.
+fn is_weak(strength: f64, record: &Record, scale: &Scale) -> bool {
+    let young = super::super::material::profile(record, "young").map_or(0.0, |young| young.value);
+    let is_nothing = scale.stress.map_or(young > RIGID * strength, |stress| strength < NOTHING * stress);
+    strength < STRONG && is_nothing
+}
+
+/// Tractions and point loads.
+pub(super) fn loads(root: &Record, scale: &Scale, report: &mut Report<'_>) {
+    let Some(stress) = scale.stress else { return };
+    for record in root.records("traction") {
+        let pressure = bare(record, "pressure").map(f64::abs).or_else(|| bare_list(record, "stress"));
+        let key = if record.gives("pressure") { "pressure" } else { "stress" };
+        if let Some(load) = pressure.filter(|load| *load < LOAD && *load < NO_LOAD * stress) {
+            report.warn(format!(
+                "W0110: {}: {load} Pa is {} kPa, negligible against the stress in this case{}. If kPa are meant, write \
+                 \"{load} kPa\"; otherwise write \"{load} Pa\".",
+                record.path_of(key),
+                1e-3 * load,
+                scale.shown()
+            ));
+        }
+    }
+    for record in root.records("point_load") {
+        let weight = stress * scale.height;
+        if let Some(force) = bare_list(record, "force").filter(|force| *force < NO_FORCE * weight) {
+            report.warn(format!(
+                "W0110: {}: {force} N is negligible against the weight in this case ({:.3} kN). Check the unit, and write it, \
+                 for example \"{force} kN/m\" in plane strain.",
+                record.path_of("force"),
+                1e-3 * weight
+            ));
+        }
+    }
+}
+
+/// Size of a vector that is written without units.
+fn bare_list(record: &Record, key: &str) -> Option<f64> {
+    if !record.gives(key) || record.has_unit(key) {
+        return None;
+    }
+    let size = record.numbers(key)?.iter().map(|along| along * along).sum::<f64>().sqrt();
+    (size > 0.0).then_some(size)
+}
