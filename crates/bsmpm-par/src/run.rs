@@ -60,8 +60,8 @@ pub struct Run<'p, K, const D: usize> {
     start: Instant,
     frame_times: Vec<f64>,
     last_frame: Option<u64>,
-    told_strips: BTreeSet<usize>,
-    told_rigid: BTreeSet<usize>,
+    warned_strips: BTreeSet<usize>,
+    warned_rigid: BTreeSet<usize>,
     hdf5: &'p Hdf5<'p>,
     saving: Saving,
     stop_cause: Option<StopCause>,
@@ -77,10 +77,10 @@ pub struct Before {
     pub is_branch: bool,
     /// step of the newest frame
     pub last_frame: Option<u64>,
-    /// strips of which it was reported that they hold nothing
-    pub told_strips: BTreeSet<usize>,
-    /// rigid bodies of which it was reported what is doubtful of them
-    pub told_rigid: BTreeSet<usize>,
+    /// strips of which a warning says that they hold nothing
+    pub warned_strips: BTreeSet<usize>,
+    /// rigid bodies with a warning
+    pub warned_rigid: BTreeSet<usize>,
     /// s  by phase; on rank 0
     pub timers: BTreeMap<String, f64>,
     /// what the ranks had sent each other, by kind; on rank 0
@@ -119,8 +119,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             start,
             frame_times,
             last_frame,
-            told_strips: std::mem::take(&mut before.told_strips),
-            told_rigid: std::mem::take(&mut before.told_rigid),
+            warned_strips: std::mem::take(&mut before.warned_strips),
+            warned_rigid: std::mem::take(&mut before.warned_rigid),
             hdf5,
             saving,
             stop_cause: None,

@@ -41,7 +41,7 @@ fn every_shipped_case_is_valid() {
                             && warning.starts_with("W0553")
                         || path.ends_with("saturated_collapse.toml") && warning.starts_with("W0551")
                 };
-                let is_slip = |told: &String| told.starts_with("W01");
+                let is_slip = |warning: &String| warning.starts_with("W01");
                 assert!(!case.warnings.iter().any(is_slip), "{}: {:?}", path.display(), case.warnings);
                 assert!(case.warnings.iter().all(on_purpose), "{}: {:?}", path.display(), case.warnings);
                 found += 1;

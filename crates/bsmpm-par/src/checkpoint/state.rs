@@ -82,13 +82,14 @@ pub struct CheckpointState {
     pub rigid_accelerations: Vec<Option<[f64; 3]>>,
     /// What the histories go on from.
     pub record: RecordState,
-    /// Strips of which it was reported that they hold nothing and, their number added, that they have let go; drains
+    /// Strips of which a warning says that they hold nothing and, their number added, that they have let go; drains
     /// and inflows without ground, three times that number added.
-    pub told_strips: BTreeSet<usize>,
-    /// Rigid bodies of which it was reported that they came too fast (twice their number) or go into the soil (and
+    #[serde(alias = "told_strips")]
+    pub warned_strips: BTreeSet<usize>,
+    /// Rigid bodies of which a warning says that they came too fast (twice their number) or go into the soil (and
     /// one), and behind those pairs that have met, and bodies that went through a face.
-    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
-    pub told_rigid: BTreeSet<usize>,
+    #[serde(default, alias = "told_rigid", skip_serializing_if = "BTreeSet::is_empty")]
+    pub warned_rigid: BTreeSet<usize>,
     /// The step of the newest frame.
     pub last_frame: Option<u64>,
     /// The files.

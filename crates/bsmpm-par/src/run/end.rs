@@ -108,7 +108,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         code
     }
 
-    /// Tells the manifest how far the run can be trusted, if it has made a step. Collective.
+    /// Records in the manifest how far the run can be trusted, if it has made a step. Collective.
     fn judge_itself(&mut self) {
         if self.simulation.steps() == 0 {
             return;
@@ -129,7 +129,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
     }
 
-    /// Tells the manifest what the run has cost so far. Collective.
+    /// Records in the manifest what the run has cost so far. Collective.
     pub(super) fn account(&mut self) {
         let world = self.universe.world();
         let (cpu, memory) = (machine::cpu_seconds(), machine::peak_memory());

@@ -168,15 +168,15 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 Vec::new(),
             ],
             record: self.recorder.state(),
-            told_strips: self.told_strips.clone(),
-            told_rigid: self.told_rigid.clone(),
+            warned_strips: self.warned_strips.clone(),
+            warned_rigid: self.warned_rigid.clone(),
             last_frame: self.last_frame,
             files: ledger.files(step)?,
         };
         state.text()
     }
 
-    /// Tells that a checkpoint could not be written, the older ones being good; all ranks know why.
+    /// Warns that a checkpoint could not be written, the older ones being good; all ranks know why.
     fn lose(&mut self, refusal: &Refusal) -> u8 {
         self.log.failure(&refusal.reason);
         if let Some(ledger) = &mut self.ledger {

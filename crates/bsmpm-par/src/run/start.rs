@@ -59,7 +59,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         Ok(())
     }
 
-    /// Tells how well the stress at the start is balanced, and warns where the first step will move the body by it.
+    /// Reports how well the stress at the start is balanced, and warns where the first step will move the body by it.
     fn tell_start(&mut self, (start, settling): &Start) {
         let (unbalance, yielding) = (start.force, start.yielding);
         let settling = settling.map(|Settling { rounds, evaluations }| ManifestSettling { rounds, evaluations });

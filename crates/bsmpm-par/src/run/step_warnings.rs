@@ -39,13 +39,13 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         for (number, report) in accepted.report.rigid.iter().enumerate() {
             let (name, t) = (self.case.rigid[number].name.clone(), short(accepted.t));
             let (advance, depth) = (report.advance, report.penetration);
-            if advance > FASTEST && self.told_rigid.insert(2 * number) {
+            if advance > FASTEST && self.warned_rigid.insert(2 * number) {
                 self.warn(format!(
                     "W0702: rigid body `{name}` moves {advance:.2} cells in a step at t = {t} (limit: {FASTEST}). Contact is detected too \
                      late. Increase `analysis.steps`, or reduce `analysis.dt`."
                 ));
             }
-            if depth > DEEPEST && self.told_rigid.insert(2 * number + 1) {
+            if depth > DEEPEST && self.warned_rigid.insert(2 * number + 1) {
                 self.warn(format!(
                     "W0703: rigid body `{name}` penetrates the soil by {depth:.2} cells at t = {t} (limit: {DEEPEST}). Its force is \
                      inaccurate. Increase `analysis.steps`, or reduce `analysis.dt`."
@@ -60,7 +60,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         for (number, report) in accepted.report.rigid.iter().enumerate() {
             let body = &self.simulation.model.boundary.rigid[number];
             let known = 2 * count + count * count + number;
-            if !(body.acts && body.is_free()) || self.told_rigid.contains(&known) {
+            if !(body.acts && body.is_free()) || self.warned_rigid.contains(&known) {
                 continue;
             }
             let (grid, slack) = (&self.case.grid, DEEPEST * self.case.grid.shortest());
@@ -77,7 +77,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let Some(through) = holding.find(|of| of.face.axis < D && further(of.face)) else { continue };
             let (name, side) = (self.case.rigid[number].name.clone(), through.face.side(self.case.geometry));
             let t = short(accepted.t);
-            self.told_rigid.insert(known);
+            self.warned_rigid.insert(known);
             self.warn(format!(
                 "W0704: rigid body `{name}` passes through boundary `{side}` at t = {t}. Boundaries do not support rigid bodies. \
                  Place soil in front of the boundary, or change the motion of the body."
@@ -115,7 +115,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             } else {
                 continue;
             };
-            if self.told_strips.insert(kind) {
+            if self.warned_strips.insert(kind) {
                 self.warn(warning);
             }
         }
@@ -133,7 +133,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let of_strips = 3 * self.simulation.model.boundary.strips.len();
         for number in (0..points.len()).filter(|&number| acts[number] && 2 * water.held[number] < points[number]) {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
-            if self.told_strips.insert(of_strips + number) {
+            if self.warned_strips.insert(of_strips + number) {
                 self.warn(format!(
                     "W0708: most of `{name}` has no soil near it at t = {t}. Water does not flow there. If the surface heaves, extend the \
                      grid by a cell beyond it."
@@ -142,7 +142,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         for number in (0..points.len()).filter(|&number| water.torn[number] > TORN) {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
-            if self.told_strips.insert(of_strips + points.len() + number) {
+            if self.warned_strips.insert(of_strips + points.len() + number) {
                 self.warn(format!(
                     "W0709: the surface of `{name}` has torn by {:.1} cells at t = {t}. The new surface is impermeable. Compare the result \
                      with that of `drainage = \"hydrostatic\"`.",
@@ -160,7 +160,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let acts: Vec<bool> = flow.map_or_else(Vec::new, |flow| flow.faces.iter().map(|face| face.acts).collect());
         for (number, face) in water.faces.iter().enumerate().filter(|(number, _)| acts[*number]) {
             let (sealed, off) = (face.held == 0, face.off as f64 > LEFT * face.near as f64);
-            if !(sealed || off) || !self.told_strips.insert(known + 2 * number + usize::from(sealed)) {
+            if !(sealed || off) || !self.warned_strips.insert(known + 2 * number + usize::from(sealed)) {
                 continue;
             }
             let name = bsmpm_scene::surfaces::name_of_drained_face(&self.case, number);

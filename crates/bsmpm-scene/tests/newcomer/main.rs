@@ -82,7 +82,7 @@ fn every_wrong_input_is_answered() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// The texts as a page, so that they are reviewed as texts: `BSMPM_RENEW=1` writes it anew.
+/// The texts as a page, so that they are reviewed as texts: `BSMPM_RENEW=1` writes it again.
 #[test]
 fn the_texts_are_those_of_the_page() {
     let mut page = String::from("Wrong inputs of a newcomer, and what the program says.\n");
