@@ -82,7 +82,7 @@ pub struct CheckpointState {
     pub rigid_accelerations: Vec<Option<[f64; 3]>>,
     /// What the histories go on from.
     pub record: RecordState,
-    /// Strips of which it was reported that they hold nothing and, their number added, that they have let go; drains
+    /// Strips of which a warning says that they hold nothing and, their number added, that they have let go; drains
     /// and inflows without ground, three times that number added.
     #[serde(rename = "told_strips")] // as it is in older checkpoints
     pub warned_strips: BTreeSet<usize>,
