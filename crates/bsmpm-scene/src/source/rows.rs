@@ -299,7 +299,7 @@ mod tests {
     fn a_peer_record_is_refused_with_what_to_do() {
         let record = b"PEER\nKOBE\nACCELERATION\nNPTS= 2, DT= .01 SEC\n 1.0E-3 2.0E-3\n".to_vec();
         let message = rows_of("kobe.AT2", record, (None, PLANE)).unwrap_err().to_string();
-        assert!(message.starts_with("E0012: ") && message.contains("t [s], a [g]"), "{message}");
+        assert!(message.starts_with("E0049: ") && message.contains("t [s], a [g]"), "{message}");
     }
 
     #[test]
