@@ -68,7 +68,7 @@ fn texts_in_sources() -> BTreeSet<String> {
     let mut texts = BTreeSet::new();
     for file in files.iter().filter(|file| !file.ends_with("tests.rs")) {
         let source = fs::read_to_string(file).expect("sources can be read");
-        let program = source.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+        let program = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
         let literals = program.match_indices('"').map(|(at, _)| &program[at + 1..]);
         texts.extend(literals.filter(|rest| code_of(rest).is_some()).map(literal));
     }

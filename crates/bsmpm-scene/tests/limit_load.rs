@@ -84,7 +84,7 @@ fn the_load_of_a_footing_that_moves_sideways_is_its_force_along_its_motion() {
     assert_eq!(columns, ["footing-load-x", "footing-load-y"]);
     assert!((load.columns[0].1 - 0.6).abs() < 1e-12 && (load.columns[1].1 + 0.8).abs() < 1e-12, "{load:?}");
     // It moves by less than a thousandth of a cell, so that its end stays on its grid line.
-    assert!(case.warnings.iter().all(|warning| !warning.contains("moves along itself")), "{:?}", case.warnings);
+    assert!(case.warnings.iter().all(|warning| !warning.starts_with("W0226")), "{:?}", case.warnings);
 }
 
 #[test]

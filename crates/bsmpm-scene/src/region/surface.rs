@@ -435,7 +435,7 @@ mod tests {
         says(one_turned, "not closed at 3 edges");
         says([block.clone(), turned(block.clone())].concat(), "encloses no volume");
         says([block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(), "intersects itself");
-        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "partly inside out");
+        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "is turned inside out");
         // Blocks with sides in common that overlap by little, and bars across each other, with sides in common and not.
         says([block.clone(), cuboid([0.99, 0.0, 0.0], [1.99, 1.0, 1.0])].concat(), "intersects itself");
         says([block.clone(), cuboid([0.3, 0.2, 0.99], [0.4, 0.5, 2.0])].concat(), "intersects itself");

@@ -4,7 +4,6 @@ use super::{Row, row};
 
 const BOX: &str = "box = { lower = [0.0, 0.0], upper = [4.0, 1.0] }";
 const POLYGON: &str = "polygon = [[2.5, 1.5], [3.75, 1.5], [\"3 m\", 2.5], [2.5, 2.5]]";
-const NOBODY: &str = "at the start. Move it onto a body";
 const SHAKEN: &str = "[[0.0, 0.1, 0.0], [\"1 s\", \"-0.1 g\", \"5 cm/s2\"]]";
 const STRESS: &str = "stress = [0.0, \"-20 kPa\"]";
 const CIRCLE: &str = "circle = { centre = [0.5, 2.0], radius = 0.4 }";
@@ -83,12 +82,7 @@ pub const LAYERS: &[Row] = &[
     row("\"2 MPa/m\"", "\"2e30 MPa/m\"", "material.till.young.per_metre", "E0010"),
     row("at_y = 3, per_metre = 500", "per_metre = 500", "material.till.cohesion.at_y", "missing"),
     row("at_y = 3, per_metre", "y = 3, per_metre", "material.till.cohesion.y", "the key `y` does not exist"),
-    row(
-        "per_metre = \"2 MPa/m\"",
-        "per_metre = \"-7 MPa/m\"",
-        "material.till.young",
-        "y = 1.5, and bodies of this material reach there; allowed: young > 0",
-    ),
+    row("per_metre = \"2 MPa/m\"", "per_metre = \"-7 MPa/m\"", "material.till.young", "E0303"),
     row("value = \"1 kPa\", at_y = 3", "value = 0, at_y = 2", "material.till.cohesion", "is -250 at y = 2.5"),
     row("value = 30, at_y", "value = 89.5, at_y", "material.till.friction_angle", "is 90.25 at y = 1.5"),
     row("value = 30, at_y", "value = -0.4, at_y", "material.till.friction_angle", "is -0.15"),
@@ -118,17 +112,12 @@ pub const STRIPS: &[Row] = &[
         "y = -0.5 m is outside the grid",
     ),
     row("displacement = [0.0, \"-10 cm\"]", "velocity = [0, 1]", "footing.velocity", "y = 3.5 m is outside the grid"),
-    row(
-        "displacement = [0.0, \"-10 cm\"]",
-        "path = [[0.5, 0, -3], [1, 0, 0]]",
-        "footing.path",
-        "at t = 0.5 it has left",
-    ),
+    row("displacement = [0.0, \"-10 cm\"]", "path = [[0.5, 0, -3], [1, 0, 0]]", "footing.path", "E0419"),
     row("displacement = [0.0, \"-10 cm\"]", "", "footing", "none of the keys displacement, velocity, path").up(3),
     row("displacement = [0.0, \"-10 cm\"]", "displacement = [0, -1]\npath = [[1, 0, 0]]", "footing.path", "E0016")
         .down(1),
-    row("displacement = [0.0, \"-10 cm\"]", "displacement = [0.1, 0]", "footing.displacement", "the motion has none"),
-    row("displacement = [0.0, \"-10 cm\"]", "displacement = [0.0, 0]", "footing.displacement", "the motion has none"),
+    row("displacement = [0.0, \"-10 cm\"]", "displacement = [0.1, 0]", "footing.displacement", "E0416"),
+    row("displacement = [0.0, \"-10 cm\"]", "displacement = [0.0, 0]", "footing.displacement", "E0416"),
     row(
         "displacement = [0.0, \"-10 cm\"]",
         "displacement = [0.0, \"-1 m/s\"]",
@@ -148,12 +137,7 @@ pub const STRIPS: &[Row] = &[
         "prescribed.1.path",
         "E0403 .. [0.0, 0.1]",
     ),
-    row(
-        "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
-        "[[0, 0, 0], [0, 0, 0]]",
-        "prescribed.1.path",
-        "t = 0 is not above 0",
-    ),
+    row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0], [0, 0, 0]]", "prescribed.1.path", "E0402"),
     row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "at least one row"),
     row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[-1, 0, 0]]", "prescribed.1.path", "E0010"),
     row(
@@ -173,12 +157,7 @@ pub const STRIPS: &[Row] = &[
     row("face = \"right\"", "face = \"right\"\nfrom = [0, 1]", "prescribed.0.from", "E0016").down(1),
     row("face = \"right\"", "from = [0, 1]", "prescribed.0", "none of the keys face, to").up(1),
     row("face = \"right\"", "", "prescribed.0", "none of the keys face, from").up(1),
-    row(
-        "velocity = [0.0, \"-10 mm/s\"]",
-        "velocity = [0.1, 0.0]",
-        "prescribed.0.velocity",
-        "it may move inward or along itself",
-    ),
+    row("velocity = [0.0, \"-10 mm/s\"]", "velocity = [0.1, 0.0]", "prescribed.0.velocity", "E0420"),
     row(
         "components = \"normal\"",
         "components = \"both\"",
@@ -218,7 +197,7 @@ pub const STRIPS: &[Row] = &[
     row("force = [0.0, \"-1 kN/m\"]", "", "point_load.0", "none of the keys force, force_path").up(2),
     row("moment  = 100.0", "force_path = [[0.5, 0.0, 1.0]]", "rigid.1.force_path", "E0016"),
     row("ramp = \"0.5 s\"", "amplitude = []", "traction.0.amplitude", "at least one row"),
-    row("ramp = \"0.5 s\"", "amplitude = [[0.5, 1.0], [0.5, 0.0]]", "traction.0.amplitude", "not above 0.5"),
+    row("ramp = \"0.5 s\"", "amplitude = [[0.5, 1.0], [0.5, 0.0]]", "traction.0.amplitude", "E0402"),
     row("ramp = \"0.5 s\"", "amplitude = [[0.5, \"1 kPa\"]]", "traction.0.amplitude", "expected"),
     row(SHAKEN, "[]", "shaking.acceleration", "E0435"),
     row(SHAKEN, "[[0.1, 0.0, 0.0]]", "shaking.acceleration", "E0415"),
@@ -229,9 +208,9 @@ pub const STRIPS: &[Row] = &[
     // Points of the block are 0.25 m apart, those of sand 0.167 m and of clay 0.25 m.
     row("from = [1.0, 2.5]\nto   = [\"2 m\", 2.5]", "from = [1.25, 2.63]\nto = [1.75, 2.63]", "footing.from", "E0233"),
     row("from = [2.5, 2.5]\nto   = [3.0, 2.5]", "from = [2.5, 2.63]\nto = [3.0, 2.63]", "prescribed.1.from", "E0233"),
-    row("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "from = [0.0, 1.4]\nto = [1.0, 1.4]", "traction.0.from", NOBODY),
-    row("to   = [1.0, 1.25]", "to = [1.0, 1.5]", "traction.0.from", "no body is at [0.").up(1),
-    row("at = [3.5, 1.25]", "at = [2.25, 1.45]", "point_load.0.at", NOBODY),
+    row("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "from = [0.0, 1.4]\nto = [1.0, 1.4]", "traction.0.from", "E0401"),
+    row("to   = [1.0, 1.25]", "to = [1.0, 1.5]", "traction.0.from", "E0401").up(1),
+    row("at = [3.5, 1.25]", "at = [2.25, 1.45]", "point_load.0.at", "E0401"),
 ];
 
 /// Stress at the start, and the histories of the footing and of the pressure.

@@ -22,16 +22,7 @@ const POISSON: &str = "poisson  = 0.3";
 const YOUNG_KEY: &str = "material.sand.young";
 
 const MATRIX: &[Input] = &[
-    Input {
-        id: "I01",
-        refused: &[row(
-            POISSON,
-            "poison = 0.3",
-            "material.sand.poison",
-            "unknown key `poison` in [material.NAME]; did you mean `poisson`?",
-        )],
-        ..NONE
-    },
+    Input { id: "I01", refused: &[row(POISSON, "poison = 0.3", "material.sand.poison", "E0011")], ..NONE },
     Input {
         id: "I03",
         refused: &[row(
@@ -53,25 +44,25 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I08",
         refused: &[
-            row(YOUNG, "0", YOUNG_KEY, "0 is out of range; allowed: young > 0"),
-            row(YOUNG, "\"-20 MPa\"", YOUNG_KEY, "\"-20 MPa\" is out of range; allowed: young > 0"),
-            row(YOUNG, "1e-30", YOUNG_KEY, "1e-30 is out of range; a stress is at least 1e-18 in SI"),
-            row("\"2 t/m3\"", "-2000", "material.sand.density", "-2000 is out of range; allowed: density > 0"),
-            row("\"2 t/m3\"", "5e-324", "material.sand.density", "a density is at least 1e-9 in SI"),
-            row("\"10 ms\"", "-0.01", "analysis.dt", "-0.01 is out of range; allowed: dt > 0"),
-            row("\"10 ms\"", "0.0", "analysis.dt", "0.0 is out of range; allowed: dt > 0"),
-            row("[0.5, \"50 cm\"]", "[0.5, 0]", "grid.cell", "0 is out of range; allowed: cell > 0"),
-            row("[0.5, \"50 cm\"]", "[0.5, \"-50 cm\"]", "grid.cell", "\"-50 cm\" is out of range; allowed: cell > 0"),
+            row(YOUNG, "0", YOUNG_KEY, "E0010"),
+            row(YOUNG, "\"-20 MPa\"", YOUNG_KEY, "E0010"),
+            row(YOUNG, "1e-30", YOUNG_KEY, "E0010"),
+            row("\"2 t/m3\"", "-2000", "material.sand.density", "E0010"),
+            row("\"2 t/m3\"", "5e-324", "material.sand.density", "E0010"),
+            row("\"10 ms\"", "-0.01", "analysis.dt", "E0010"),
+            row("\"10 ms\"", "0.0", "analysis.dt", "E0010"),
+            row("[0.5, \"50 cm\"]", "[0.5, 0]", "grid.cell", "E0010"),
+            row("[0.5, \"50 cm\"]", "[0.5, \"-50 cm\"]", "grid.cell", "E0010"),
         ],
         ..NONE
     },
     Input {
         id: "I09",
         refused: &[
-            row(POISSON, "poisson = 0.5", "material.sand.poisson", "0.5 is out of range; (-1 < poisson < 0.5 (at 0.5"),
+            row(POISSON, "poisson = 0.5", "material.sand.poisson", "E0010"),
             row(POISSON, "poisson = 0.5000001", "material.sand.poisson", "(-1 < poisson < 0.5"),
             row(POISSON, "poisson = -1", "material.sand.poisson", "-1 is outside the allowed range"),
-            row(POISSON, "poisson = -1.5", "material.sand.poisson", "-1.5 is out of range"),
+            row(POISSON, "poisson = -1.5", "material.sand.poisson", "E0010"),
         ],
         taken: &[
             (POISSON, "poisson = 0.49995", "W0303: material.sand: poisson = 0.49995"),
@@ -84,14 +75,9 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I10",
         refused: &[
-            row("\"30 deg\"", "-1", "material.sand.friction_angle", "-1 is out of range; (0 <= friction_angle < 90"),
-            row("\"30 deg\"", "90", "material.sand.friction_angle", "90 is out of range; (0 <= friction_angle < 90"),
-            row(
-                "dilation_angle = 5",
-                "dilation_angle = 30.1",
-                "material.sand.dilation_angle",
-                "30.1 is out of range; (0 <= dilation_angle <= friction_angle = 30",
-            ),
+            row("\"30 deg\"", "-1", "material.sand.friction_angle", "E0010"),
+            row("\"30 deg\"", "90", "material.sand.friction_angle", "E0010"),
+            row("dilation_angle = 5", "dilation_angle = 30.1", "material.sand.dilation_angle", "E0308"),
             row(
                 "dilation_angle = 5",
                 "dilation_angle = -1",
@@ -115,10 +101,10 @@ const MATRIX: &[Input] = &[
                 "body.0.box.upper",
                 "is not above lower = [0.0, 0.0] along each axis",
             ),
-            row("upper = [4.0, 1.0] }", "upper = [4.0, 1e-12] }", "body.0.box.upper", "it has no points"),
+            row("upper = [4.0, 1.0] }", "upper = [4.0, 1e-12] }", "body.0.box.upper", "E0219"),
             row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "(radius > 0"),
         ],
-        refused_static: &[row("[[body]]\nmaterial", "[[bodies]]\nmaterial", "bodies", "unknown key `bodies`")],
+        refused_static: &[row("[[body]]\nmaterial", "[[bodies]]\nmaterial", "bodies", "E0011")],
         ..NONE
     },
     Input {
@@ -163,13 +149,8 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I15",
         refused: &[
-            row(
-                "points_per_cell = 3",
-                "points_per_cell = 0",
-                "body.0.points_per_cell",
-                "0 is out of range; allowed: 1 <= points_per_cell <= 100",
-            ),
-            row("points_per_cell = 3", "points_per_cell = 101", "body.0.points_per_cell", "101 is out of range"),
+            row("points_per_cell = 3", "points_per_cell = 0", "body.0.points_per_cell", "E0010"),
+            row("points_per_cell = 3", "points_per_cell = 101", "body.0.points_per_cell", "E0010"),
             row("points_per_cell = 3", "points_per_cell = [2, 3]", "body.0.points_per_cell", "found a list of 2"),
             row("points_per_cell = 3", "points_per_cell = 2.5", "body.0.points_per_cell", "found 2.5"),
         ],
@@ -182,7 +163,7 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I16",
         refused: &[
-            row("top    = \"fixed\"", "up = \"fixed\"", "boundary.up", "unknown key `up` in [boundary]"),
+            row("top    = \"fixed\"", "up = \"fixed\"", "boundary.up", "E0011"),
             row("face = \"right\"", "face = \"rigth\"", "prescribed.0.face", "did you mean `right`?"),
             row("face = \"right\"", "face = \"top\"", "prescribed.0.face", "E0236"),
         ],
@@ -202,20 +183,10 @@ const MATRIX: &[Input] = &[
                 "prescribed.1.path",
                 "E0402 .. t = 0.5 .. 1 in the row before",
             ),
-            row(
-                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
-                "[]",
-                "prescribed.1.path",
-                "a path needs at least one row [t, ux, uy] with t > 0",
-            ),
+            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[]", "prescribed.1.path", "E0435"),
             row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "at least one row"),
-            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1.0, 0, nan]]", "prescribed.1.path", "nan is E0010"),
-            row(
-                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
-                "[[1e-300, 0, 0]]",
-                "prescribed.1.path",
-                "a time is at least 1e-12 in SI",
-            ),
+            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1.0, 0, nan]]", "prescribed.1.path", "E0010"),
+            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1e-300, 0, 0]]", "prescribed.1.path", "E0010"),
         ],
         taken: &[("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1.0, 0.0, -0.1]]", "")],
         ..NONE
@@ -223,12 +194,12 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I18",
         refused: &[
-            row("end  = \"1 s\"", "end = \"-1 s\"", "analysis.end", "\"-1 s\" is out of range; allowed: end > 0"),
-            row("\"10 ms\"", "1.5", "analysis.dt", "1.5 is out of range; allowed: dt <= end = 1"),
-            row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "0 is out of range; (1 <= steps <= 1000000000"),
-            row("dt   = \"10 ms\"", "steps = 1_000_000_000_000", "analysis.steps", "1000000000000 is out of range"),
+            row("end  = \"1 s\"", "end = \"-1 s\"", "analysis.end", "E0010"),
+            row("\"10 ms\"", "1.5", "analysis.dt", "E0256"),
+            row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "E0010"),
+            row("dt   = \"10 ms\"", "steps = 1_000_000_000_000", "analysis.steps", "E0010"),
             row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps until the end (at most 1e9)"),
-            row("every  = \"0.1 s\"", "every = 0", "output.every", "0 is out of range; allowed: every > 0"),
+            row("every  = \"0.1 s\"", "every = 0", "output.every", "E0010"),
             row("times  = [\"0.25 s\", 0.75]", "times = [1e-9]", "output.times", "E0664"),
             row("at       = \"0.5 s\"", "at = 1e-9", "check.0.at", "E0664"),
         ],
@@ -240,11 +211,15 @@ const MATRIX: &[Input] = &[
                 "[\"2 ms\", \"-0.1 g\"",
                 "W0404: shaking.acceleration: rows are 0.002 apart in time, but a step is 0.01",
             ),
-            ("[\"1 s\", \"-0.1 g\"", "[\"2 ms\", \"-0.1 g\"", "rows are 0.002 apart and steps 0.01"),
-            ("bottom = \"fixed\"", "bottom = { friction_coefficient = 1.5 }", "shown to be right up to 1"),
+            ("[\"1 s\", \"-0.1 g\"", "[\"2 ms\", \"-0.1 g\"", "W0404: shaking.acceleration: "),
+            (
+                "bottom = \"fixed\"",
+                "bottom = { friction_coefficient = 1.5 }",
+                "W0204: boundary.bottom.friction_coefficient: ",
+            ),
             ("bottom = \"fixed\"", "bottom = \"contact\"", "W0671: analysis.dt: "),
-            ("ramp = \"0.5 s\"", "amplitude = [[2, 1]]", "traction.0.amplitude: the row at t = 2 is beyond the end"),
-            ("ramp = \"0.5 s\"", "amplitude = [[0, 1]]", "traction.0: acts in full from time 0"),
+            ("ramp = \"0.5 s\"", "amplitude = [[2, 1]]", "W0403: traction.0.amplitude: "),
+            ("ramp = \"0.5 s\"", "amplitude = [[0, 1]]", "W0405: traction.0: "),
         ],
         ..NONE
     },
@@ -258,12 +233,7 @@ const MATRIX: &[Input] = &[
                 "1000000000000 cells and 2000008000008 unknowns (at most 2147483647",
             ),
             row("[0.5, \"50 cm\"]", "[1e-9, 1e-9]", "grid.cell", "cells along x (at most 2147483647)"),
-            row(
-                "upper = [4.0, 3.0]",
-                "upper = [9223372036854775807, 3.0]",
-                "grid.upper",
-                "is out of range; a length is at most 1e9 in SI",
-            ),
+            row("upper = [4.0, 3.0]", "upper = [9223372036854775807, 3.0]", "grid.upper", "E0010"),
             row("[0.5, \"50 cm\"]", "[1e-4, 1e-4]", "grid.cell", "1200000000 cells and 2400280008 unknowns"),
         ],
         ..NONE
@@ -271,26 +241,16 @@ const MATRIX: &[Input] = &[
     Input {
         id: "I24",
         refused: &[
-            row(
-                "factor = 1.25",
-                "factor = -1.25",
-                "strength_reduction.factor",
-                "-1.25 is out of range; (0.1 <= factor <= 100",
-            ),
-            row("factor = 1.25", "factor = 0", "strength_reduction.factor", "0 is out of range"),
+            row("factor = 1.25", "factor = -1.25", "strength_reduction.factor", "E0010"),
+            row("factor = 1.25", "factor = 0", "strength_reduction.factor", "E0010"),
         ],
         ..NONE
     },
     Input {
         id: "I25",
         refused: &[
-            row(
-                "-9.81]",
-                "-1e308]",
-                "gravity.acceleration",
-                "-1e308 is out of range; an acceleration is at most 1e12 in SI",
-            ),
-            row("\"2 t/m3\"", "1e308", "material.sand.density", "a density is at most 1e9 in SI"),
+            row("-9.81]", "-1e308]", "gravity.acceleration", "E0010"),
+            row("\"2 t/m3\"", "1e308", "material.sand.density", "E0010"),
         ],
         taken: &[
             ("-9.81]", "-1e12]", ""),
@@ -309,7 +269,7 @@ const MATRIX: &[Input] = &[
         .down(1)],
         taken: &[
             (YOUNG, "20", "W0101: material.sand.young: 20 Pa is 0.02 kPa"),
-            (YOUNG, "\"20000 GPa\"", "check the unit"),
+            (YOUNG, "\"20000 GPa\"", "W0302: material.sand: "),
             ("\"18 kN/m3\"", "18", "W0108: material.clay: 1.835 kg/m3, a unit weight of 0.018 kN/m3"),
         ],
         ..NONE

@@ -12,8 +12,7 @@ pub const STAGES: &[Row] = &[
     row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "E0622").down(1),
     row("add  = [\"fill\"]", "activate = [\"fill\"]", "stage.0.activate", "E0612"),
     row("add  = [\"fill\"]", "activate = [\"plough\"]", "stage.0.activate", "E0624"),
-    row("add  = [\"fill\"]", "activate = [\"pipe\"]", "rigid.1.start_velocity", "a stage applies it later, at rest")
-        .down(47),
+    row("add  = [\"fill\"]", "activate = [\"pipe\"]", "rigid.1.start_velocity", "E0430").down(47),
     row(
         "add  = [\"fill\"]",
         "materials = [{ from = \"sand\", to = \"clai\" }]",
@@ -39,8 +38,8 @@ pub const STAGES: &[Row] = &[
     row("factor = 1.25", "factor = 1.25\nsteps = 5", "strength_reduction.steps", "E0631").down(1),
     row("factor = 1.25", "factor = 1.25\ndrainage = \"undrained\"", "strength_reduction.drainage", "E0631").down(1),
     row("factor = 1.25", "factor = 1.25\nsteps = 1001", "strength_reduction.steps", "0 <= steps <= 1000").down(1),
-    row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "stages follow in time"),
-    row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "not before the end of the run"),
+    row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "E0621"),
+    row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "E0620"),
     row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "E0010"),
     row("name     = \"fill\"", "name = \"a b\"", "body.5.name", "expected a name"),
     row(

@@ -38,8 +38,7 @@ pub const WATER: &[Row] = &[
 ];
 /// Pressure that points carry, beside other water.
 pub const RATIO_AND_WATER: &[Row] = &[
-    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "[water] gives the pore pressure, too")
-        .down(1),
+    row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 0.3", RU, "E0320").down(1),
     row(SATURATED, "saturated_unit_weight = \"20 kN/m3\"\nru = 1.0", RU, "(0 < ru < 1").down(1),
     row("[water]\nlevel = 0.75\n", "[water]\nlevel = 0.75\nru = 0.3\n", "water.ru", "E0011").down(2),
 ];

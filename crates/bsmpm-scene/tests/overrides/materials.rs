@@ -67,14 +67,11 @@ fn softening_strengths() {
     let case = with("residual_cohesion = 0, softening_strain = 0.2, band_width = \"5 cm\"").expect("a valid case");
     let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else { panic!() };
     assert!((clay.parameters()[6] - 0.01).abs() < 1e-15, "{:?}", clay.parameters());
-    assert!(!case.warnings.iter().any(|warning| warning.contains("depend on the cells")));
+    assert!(!case.warnings.iter().any(|warning| warning.starts_with("W0307")));
     for (text, reported) in [
-        ("softening_strain = 0.2", "needs it"),
+        ("softening_strain = 0.2", "E0305"),
         ("residual_cohesion = 0, softening_strain = 0", "(softening_strain > 0"),
-        (
-            "residual_cohesion = 0, softening_strain = 0.2, residual_dilation_angle = 26",
-            "0 <= residual_dilation_angle <= ",
-        ),
+        ("residual_cohesion = 0, softening_strain = 0.2, residual_dilation_angle = 26", "E0308"),
         ("residual_cohesion = 0, softening_strain = 0.2, softening = \"quadratic\"", "exponential"),
         ("residual_cohesion = 0, softening_strain = 0.2, separation = \"gap\"", "E0304"),
     ] {
@@ -233,10 +230,10 @@ fn cam_clay_and_its_start() {
     assert_eq!((graded.at(1.0).parameters()[3], graded.is_linear(), graded.softens()), (55e3, false, true));
     for (text, reported) in [
         ("poisson = 0.3", "duplicate key"),
-        ("k0 = 0.5", "missing; model \\\"modified-cam-clay\\\" needs it, or ocr"),
+        ("k0 = 0.5", "E0305"),
         ("ocr = 0.9", "E0010"),
         ("ocr = 2, preconsolidation = 1e5", "E0016"),
-        ("ocr = 2, cohesion = 1e3", "has no meaning"),
+        ("ocr = 2, cohesion = 1e3", "E0304"),
     ] {
         let message = format!("{:?}", with(text).expect_err("refused"));
         assert!(message.contains(reported), "{text}: {message}");

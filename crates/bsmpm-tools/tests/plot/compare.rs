@@ -156,7 +156,11 @@ fn residuals_of_a_step_are_drawn_and_printed() {
     let (code, message) = refused(dir.path(), &["new.out", "--residuals", "8"]);
     assert_eq!((code, message.contains("step 8") && message.contains("step is 7")), (66, true), "{message}");
     let (code, message) = refused(dir.path(), &["plain.out", "--residuals", "7"]);
-    assert_eq!((code, message.contains("[output] residuals = true")), (66, true), "{message}");
+    assert_eq!(
+        (code, message.contains("E0806") && message.contains("output.residuals = true")),
+        (66, true),
+        "{message}"
+    );
     for option in [&["--y", "slip"][..], &["--last"], &["--line", "1"], &["--x-scale", "2"]] {
         assert_eq!(refused(dir.path(), &[&runs[..], option].concat()).0, 2, "{option:?}");
     }
@@ -168,11 +172,11 @@ fn what_does_not_fit_is_said() {
     footings(dir.path());
     let refuse = |arguments: &[&str]| refused(dir.path(), arguments);
     let (code, message) = refuse(&["new.out", "--y", "pressure"]);
-    let known = "step, time, p_over_c, footing-force, penetration, slip, heave";
+    let known = "Choose one of: step, time, p_over_c, footing-force, penetration, slip, heave.";
     assert_eq!((code, message.trim_end().ends_with(known)), (66, true), "{message}");
     assert_eq!(refuse(&["new.out", "nowhere", "--y", "slip"]).0, 66);
     let (code, message) = refuse(&["new.out", "old.out", "--y", "slip", "--label", "one"]);
-    assert_eq!((code, message.contains("--label")), (2, true), "{message}");
+    assert_eq!((code, message.contains("E0805: --label")), (2, true), "{message}");
     for arguments in [
         &["new.out"][..],
         &["--y", "slip"],
@@ -196,7 +200,7 @@ fn what_does_not_fit_is_said() {
     fs::write(&history, text.replace("scaled Pa", "Pa")).unwrap();
     let both = ["new.out", "old.out", "--y", "p_over_c"];
     let (code, message) = refuse(&both);
-    assert_eq!((code, message.contains("scaled Pa")), (2, true), "{message}");
+    assert_eq!((code, message.contains("E0804") && message.contains("scaled Pa")), (2, true), "{message}");
     assert_eq!(printed(dir.path(), &[&both[..], &["--y-label", "p/c"]].concat()), "compare.png\n");
 
     // A run that did not come to its end is drawn, and said to be one.
@@ -208,5 +212,5 @@ fn what_does_not_fit_is_said() {
     let begin: String = text.split_inclusive('\n').take(2).collect();
     fs::write(&history, begin).unwrap();
     let (code, message) = refuse(&["old.out", "--y", "slip"]);
-    assert_eq!((code, message.contains("no row")), (66, true), "{message}");
+    assert_eq!((code, message.contains("E0803")), (66, true), "{message}");
 }

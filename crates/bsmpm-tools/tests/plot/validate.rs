@@ -405,7 +405,7 @@ fn a_picture_that_cannot_be_drawn_leaves_the_other_studies_alone() {
     prepare(dir.path(), &format!("{bad}{good}{body}"));
     let output = validate(dir.path(), &["--short"]);
     let text = printed(&output);
-    assert!(text.contains("curve.png is not drawn: history.csv of") && text.contains("no column \"depth\""), "{text}");
+    assert!(text.contains("curve.png is not drawn: E0803: ") && text.contains("no column `depth`"), "{text}");
     assert_eq!((output.status.code(), text.lines().last()), (Some(77), Some("2 passed, 1 failed")), "{text}");
     let out = dir.path().join("out");
     assert!(!out.join("curve.png").exists() && out.join("other.png").exists());

@@ -72,7 +72,7 @@ fn a_block_on_rock_has_the_factor_of_its_friction_inclined_to_the_cells_or_not()
         let found = found(BLOCK, ((1.2, 1.8), None), set);
         let [stands, fails] = band(&found);
         println!("{stands} to {fails}");
-        assert!(found["notes"].to_string().contains("the friction of interfaces"), "{found}");
+        assert!(found["notes"].to_string().contains("the friction coefficient of interfaces"), "{found}");
         assert!(stands <= 1.5 && 1.5 <= fails && fails - stands < 0.0201, "{set:?}: {stands} {fails}");
     }
 }
@@ -149,13 +149,13 @@ fn a_slope_held_by_a_wall_has_the_factor_of_one_held_by_a_face() {
     });
     assert_eq!(on["factor_of_safety"], stops["factor_of_safety"]);
     assert!((estimate(&on) / face - 1.0).abs() < 0.01, "{on}");
-    assert!(on["notes"].to_string().contains("are held where they are then"), "{on}");
+    assert!(on["notes"].to_string().contains("are fixed at the end of the stage"), "{on}");
     // A strip at the face that goes as far the other way, and stops.
     let strip = "prescribed=[{ face = \"right\", components = \"normal\", path = [[1, 0, 0], [2, -0.01, 0]] }]";
     let moved = of(Some("built"), &["boundary.right=free", strip, stages]);
     println!("{} held by a strip that has moved", estimate(&moved));
     assert!((estimate(&moved) / face - 1.0).abs() < 0.01, "{moved}");
-    assert!(moved["notes"].to_string().contains("are held where they are then"), "{moved}");
+    assert!(moved["notes"].to_string().contains("are fixed at the end of the stage"), "{moved}");
 }
 
 /// A body that no material comes near is none: 0.970513 and 0.970514. With bodies equilibrium is sought in two passes,

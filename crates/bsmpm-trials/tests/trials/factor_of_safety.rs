@@ -131,7 +131,7 @@ fn an_embankment_on_clay_whose_weight_acts_from_the_start_has_a_factor() {
     let (found, notes) = (estimate(&found), found["notes"].to_string());
     // Bishop's simplified circles: 1.428.
     assert!((found / 1.428 - 1.0).abs() < 0.05, "{found}");
-    assert!(notes.contains("a load acts at once") && notes.contains("begins with a stress"), "{notes}");
+    assert!(notes.contains("a load acts at once") && notes.contains("without the initial stress"), "{notes}");
 }
 
 /// Built by gravity with the whole strength, which then falls: the factor of the slope that is loaded with less.
@@ -264,7 +264,7 @@ fn a_point_that_creeps_at_the_surface_does_not_decide() {
     println!("{}", estimate(&found));
     assert!((estimate(&found) / 1.37 - 1.0).abs() < 0.01, "{found}");
     let notes = found["notes"].to_string();
-    assert!(notes.contains("they creep at a free surface and do not count"), "{notes}");
+    assert!(notes.contains("W0801: in the trial "), "{notes}");
     let [low, high] = ["lower", "upper"].map(|key| found["mechanism"][key][0].as_f64().unwrap());
     assert!(4.0 < low && low < 12.0 && 28.0 < high && high < 33.0, "{}", found["mechanism"]);
 }
@@ -300,6 +300,6 @@ fn a_side_in_tension_that_holds_a_mechanism_back_is_named() {
     let [held, released] = [of(&[]), of(&["boundary.left=contact"])];
     assert!(estimate(&held) > 1.05 * estimate(&released), "{held} {released}");
     assert_eq!(held["mechanism"]["pulled"][0]["side"], "left", "{held}");
-    assert!(held["notes"].to_string().contains("reaches a side of the grid that is in tension there: left"), "{held}");
+    assert!(held["notes"].to_string().contains("reaches a side of the grid that is in tension: left"), "{held}");
     assert!(!released["notes"].to_string().contains("in tension"), "{released}");
 }
