@@ -70,7 +70,8 @@ fn names(table: &'static Table) -> impl Iterator<Item = &'static str> {
 pub(crate) fn report_unknown(table: &'static Table, written: &DocumentTable, path: &str, report: &mut Report<'_>) {
     let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
     for entry in unknown.by_ref().take(MOST_UNKNOWN) {
-        let meant: Vec<String> = answered(table, &entry.key).iter().map(|name| join(path, name)).collect();
+        let near = nearest(&entry.key, names(table));
+        let meant = answered(table, &entry.key).into_iter().chain(near).map(|name| join(path, name)).collect();
         report.about(entry.origin, &join(path, &entry.key), unknown_key(table, &entry.key), meant);
     }
     if let Some(entry) = unknown.next() {
@@ -90,19 +91,14 @@ fn unknown_key(table: &'static Table, key: &str) -> String {
             None => format!("E0011: the key `{}` does not exist in {}. {answer}", shortened(key), table.header),
         };
     }
+    let (name, header) = (shortened(key), table.header);
+    if let Some(meant) = nearest(key, names(table)) {
+        return format!("E0011: the key `{name}` does not exist in {header}; did you mean `{meant}`?");
+    }
     let elsewhere = ROOT.all().into_iter().find(|other| other.key(key).is_some());
-    let hint = match (nearest(key, names(table)), elsewhere) {
-        (Some(name), _) => format!("; did you mean `{name}`?"),
-        (None, Some(other)) => format!("; it belongs to {}.", other.header),
-        (None, None) => ".".to_owned(),
-    };
+    let hint = elsewhere.map_or(String::new(), |other| format!("; it belongs to {}", other.header));
     let known: Vec<&str> = names(table).collect();
-    format!(
-        "E0011: the key `{}` does not exist in {}{hint} Known keys: {}.",
-        shortened(key),
-        table.header,
-        known.join(", ")
-    )
+    format!("E0011: the key `{name}` does not exist in {header}{hint}. Known keys: {}.", known.join(", "))
 }
 
 fn in_value(node: &mut Node, kind: &'static Kind, path: &str, report: &mut Report<'_>) {

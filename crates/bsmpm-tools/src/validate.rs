@@ -20,8 +20,6 @@ mod kink;
 mod matrix;
 mod measure;
 mod measured;
-#[cfg(test)]
-mod plausible;
 mod runs;
 mod table;
 
@@ -211,3 +209,6 @@ fn draw_body(plot: &matrix::Plot, outcomes: &BTreeMap<String, MatrixOutcome>, ou
 fn write(path: &Path, text: &str) -> Result<(), Error> {
     Ok(fs::write(path, text).map_err(bsmpm_io::Error::file("write", path))?)
 }
+
+#[cfg(test)]
+mod plausible;

@@ -213,14 +213,6 @@ impl ValueReader<'_, '_> {
                  Write a number, in m per unit of pseudo-time.",
                 node.show()
             )),
-            Dimension::Density if unit::parse(text, Dimension::UnitWeight).is_ok() => Err(format!(
-                "E0050: {} is a unit weight, not a density. Write unit_weight = {}.",
-                node.show(),
-                node.show()
-            )),
-            Dimension::UnitWeight if unit::parse(text, Dimension::Density).is_ok() => {
-                Err(format!("E0050: {} is a density, not a unit weight. Write density = {}.", node.show(), node.show()))
-            }
             Dimension::LineForce if self.geometry != Geometry::PlaneStrain => unit::parse(text, Dimension::Force),
             _ => unit::parse(text, dimension),
         }

@@ -105,7 +105,7 @@ pub const LANGUAGE: &[Row] = &[
     row("\"20 MPa\"", "\"\"", "material.sand.young", "not a number with a unit"),
     row("\"30 deg\"", "\"30 m\"", "material.sand.friction_angle", "expected an angle (deg, rad)"),
     row("\"10 ms\"", "\"10 mm\"", "analysis.dt", "expected a time"),
-    row("\"2 t/m3\"", "\"20 kN/m3\"", "material.sand.density", "Write unit_weight = \"20 kN/m3\""),
+    row("\"2 t/m3\"", "\"20 kN/m3\"", "material.sand.density", "Use the key `unit_weight`"),
     row("\"mohr-coulomb\"", "\"hardening-soil\"", "material.sand.model", "error E0012"),
     row("\"-1 m/s\"", "\"-1 m/s2\"", "body.2.velocity", "expected a velocity"),
     row("-9.81]", "\"-1 gee\"]", "gravity.acceleration", "is not known. Known units: m/s2"),
