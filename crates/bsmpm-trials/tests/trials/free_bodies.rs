@@ -244,7 +244,7 @@ fn the_buoyancy_that_a_rigid_body_lacks_is_warned_of() {
 fn strength_reduction_names_the_friction_that_it_divides() {
     let scratch = Scratch::with_case(&(changed(BLOCK, "MU", "0.5") + "[strength_reduction]\nfactor = 2.0\n"));
     let output = scratch.direct(&["case.toml", "--check"]).expect(0);
-    output.says_once("rigid.0.friction_coefficient = 0.25 (strength_reduction.factor = 2)");
+    output.says_once("rigid.0.friction_coefficient = 0.25 (divided by strength_reduction.factor = 2)");
     assert!(!output.stderr.contains("W0601") && !output.stdout.contains("W0601"));
 }
 
