@@ -374,9 +374,9 @@ pub const QUASI_STATIC: &[Row] = &[
     row("bottom = \"fixed\"", "left = \"free-field\"", "boundary.left", "E0671"),
     row("points_per_cell = 3", "points_per_cell = 3\nvelocity = [1, 0]", "body.0.velocity", "E0218").down(1),
     row("[output]", "[[history]]\nquantity = \"momentum\"\n[output]", "history.0.quantity", "E0645").down(1),
-    row("steps = 4", "steps = 4\nspectral_radius = 0.8", "analysis.spectral_radius", "no inertia").down(1),
+    row("steps = 4", "steps = 4\nspectral_radius = 0.8", "analysis.spectral_radius", "E0218").down(1),
     row("steps = 4", "steps = 4\nmass = \"consistent\"", "analysis.mass", "E0218").down(1),
-    row("steps = 4", "steps = 4\nnewmark_gamma = 0.6", "analysis.newmark_gamma", "no inertia").down(1),
+    row("steps = 4", "steps = 4\nnewmark_gamma = 0.6", "analysis.newmark_gamma", "E0218").down(1),
     row("steps = 4", "steps = 4.5", "analysis.steps", "whole number"),
     row(
         "model   = \"elastic\"",
