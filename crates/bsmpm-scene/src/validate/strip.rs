@@ -53,7 +53,7 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             }
             Site::Segment { .. } | Site::Plate(_) => stays_inside(record, site, &path, around, report),
         }
-        let found = match site {
+        let given = match site {
             Site::Segment { .. } | Site::Plate(_) => contact_of((root, record), "components", site, around, report),
             Site::Face(_) => {
                 if record.record("components").is_some() {
@@ -64,7 +64,7 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
                 None
             }
         };
-        let (base, contact) = match found {
+        let (base, contact) = match given {
             Some(Some(contact)) => contact,
             Some(None) => continue,
             None => (record.word("components").unwrap_or(Components::All).base(), None),
