@@ -33,8 +33,8 @@ const MOST_PERMEABLE: f64 = 1.0;
 const LEAST_PERMEABLE: f64 = 1e-14;
 
 /// Message of a key that only pore-water flow uses.
-const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this has no effect. Set `drainage = \
-                            \"coupled\"` with `porosity` and `permeability`, or remove this.";
+const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this entry has no effect. Give a material \
+                            `drainage = \"coupled\"`, `porosity` and `permeability`, or remove this entry.";
 
 /// Drainage that the case gives a material.
 fn drainage(root: &Record, material: &Record) -> Option<Drainage> {
@@ -103,13 +103,13 @@ fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64>
     const KEY: &str = "suction";
     let Some(water) = root.record("water").filter(|water| water.gives(KEY)) else { return Some(f64::INFINITY) };
     if !retains {
-        let message = "E0503: no material has a `retention` curve, so the suction has no effect. Give one to the \
-                       soil above the water table, or remove `suction`.";
+        let message = "E0503: no material has a `retention` curve, so `suction` has no effect. Give the soil above \
+                       the water table a `retention` curve, or remove `suction`.";
         water.consequence(KEY, message, &["material"], report);
     }
     if ["level", "level_path", "line", "line_path"].iter().all(|key| !water.gives(key)) {
-        let message = "E0504: the suction is limited above a water table, and there is none. Give `water.level`, \
-                       `level_path`, `line` or `line_path`.";
+        let message = "E0504: `suction` applies above the water table, but the case has no water table. Give \
+                       `water.level`, `level_path`, `line` or `line_path`, or remove `suction`.";
         water.error(KEY, message, report);
     }
     water.number(KEY)
@@ -139,15 +139,16 @@ fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Optio
     let mut failed = false;
     for key in needs.iter().filter(|key| !record.gives(key)) {
         let message = format!(
-            "E0505: the key is missing, but `drainage = \"{drainage}\"` requires it. Add the key, or change `drainage`."
+            "E0505: `{key}` is missing, but drainage = \"{drainage}\" requires it. Add `{key}`, or change \
+             `drainage`."
         );
         report.error(record.origin, &record.path_of(key), message);
         failed = true;
     }
     for key in FLOWING[known..].iter().filter(|key| record.gives(key)) {
         let message = format!(
-            "E0506: the key has no effect with `drainage = \"{drainage}\"`. Set `drainage = \"coupled\"` for \
-             pore-water flow, or remove the key."
+            "E0506: `{key}` has no effect with drainage = \"{drainage}\". Set drainage = \"coupled\" for pore-water \
+             flow, or remove `{key}`."
         );
         record.error(key, message, report);
         failed = true;
@@ -198,7 +199,11 @@ fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[
     let rises = |pair: &[[f64; 3]]| pair[1][1] > pair[0][1] || pair[1][2] > pair[0][2];
     let last = rows[rows.len() - 1];
     let wrong = if rows[0] != [0.0, 1.0, 1.0] {
-        Some("E0509: the first row is not that of saturated soil. Begin the curve with [0, 1, 1].".into())
+        Some(
+            "E0509: the first row must be that of saturated soil, with zero suction. Begin the curve with [0, 1, \
+              1]."
+            .into(),
+        )
     } else if rows.len() < 2 {
         let message = "E0509: the curve has one row, but needs at least two. Add rows [suction head, saturation, \
                        relative permeability].";
@@ -307,17 +312,17 @@ impl Ground<'_> {
             let at = &at[..grid.dims()];
             let message = match under {
                 Some(body) => format!(
-                    "E0510: the body at {at:.3?} m is of material `{}`, which has no pore-water flow. Set its \
-                     `drainage = \"coupled\"` with `porosity` and `permeability`.",
+                    "E0510: the soil at {at:.3?} m consists of material `{}`, which has no pore-water flow. Give \
+                     this material `drainage = \"coupled\"`, `porosity` and `permeability`.",
                     self.materials[body.material].name
                 ),
                 None if comes => format!(
-                    "E0511: no body is at {at:.3?} m yet when this begins to act. Give the drain or inflow a \
-                     `name`, and list it in `activate` of the stage that adds the body."
+                    "E0511: no body exists at {at:.3?} m when this drain or inflow begins to act. Give the drain or \
+                     inflow a `name`, and list the name in `activate` of the stage that adds the body."
                 ),
                 None => format!(
-                    "E0512: no body is at {at:.3?} m at the start, nor within half a spacing of material points. \
-                     Move this place to the surface of the soil."
+                    "E0512: no soil lies at {at:.3?} m, nor up to half a spacing of material points from there. Move \
+                     the drain or inflow to the surface of the soil."
                 ),
             };
             record.consequence(key, message, PERMEABLE, report);
@@ -334,8 +339,8 @@ fn named(root: &Record, report: &mut Report<'_>) {
         let Some(name) = record.text("name") else { continue };
         if drains[..number].iter().any(|other| other.text("name") == Some(name)) {
             let message = format!(
-                "E0513: another drain is also called `{name}`, so histories and stages cannot distinguish them. \
-                 Give each drain its own name."
+                "E0513: another drain is also called `{name}`, so histories and stages cannot tell which one is \
+                 meant. Give each drain its own `name`."
             );
             record.error("name", message, report);
         }
@@ -348,8 +353,8 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
         DrainSite::Face(face(record, ground, report)?)
     } else if record.gives("surface") {
         if !record.flag("surface")? {
-            let message = "E0514: `false` selects no surface for the drain. Set `surface = true`, or replace the \
-                           key by `face`, `circle`, or `from` and `to`.";
+            let message = "E0514: `surface = false` gives the drain no place. Set `surface = true`, or replace \
+                           `surface` by `face`, by `circle`, or by `from` and `to`.";
             record.error("surface", message, report);
             return None;
         }
@@ -387,13 +392,13 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
     }
     if record.gives("seepage") {
         if !record.flag("seepage")? {
-            let message =
-                "E0514: `false` has no effect here. Set `seepage = true` for a seepage face, or remove the key.";
+            let message = "E0514: `seepage = false` has no effect. Set `seepage = true` for a seepage face, or remove \
+                 `seepage`.";
             record.error("seepage", message, report);
         }
         if record.gives("face") {
-            let message = "E0515: a face of the grid cannot be a seepage face, because water passes it in both \
-                           directions. Replace `face` by `from` and `to` on the body's surface.";
+            let message = "E0515: a face of the grid cannot be a seepage face, because water could also enter \
+                           through it. Replace `face` by `from` and `to` on the surface of the body.";
             record.error("seepage", message, report);
         }
         return Some(Given::Seepage);
@@ -414,8 +419,8 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
     let (at, side) = ([grid.lower(), grid.upper()][usize::from(face.upper)][face.axis], usize::from(face.upper));
     if !ground.permeable().iter().any(|body| (body.region.corners()[side][face.axis] - at).abs() <= slack) {
         let message = format!(
-            "E0516: no body with pore-water flow lies at this face ({} = {at} m). Choose another face, or give the \
-             surface of the soil by `from` and `to` (3-D: `rectangle`).",
+            "E0516: no body with pore-water flow touches this face of the grid ({} = {at} m). Choose another face, \
+             or give the surface of the soil by `from` and `to` (3-D: `rectangle`).",
             ["x", "y", "z"][face.axis]
         );
         record.consequence("face", message, PERMEABLE, report);
@@ -441,8 +446,8 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     let shift = |at: [f64; 2]| [0, 1].map(|axis| lower[axis] + at[axis]);
     let pieces: Vec<[[f64; 2]; 2]> = pieces.into_iter().map(|piece| piece.map(shift)).collect();
     if pieces.is_empty() {
-        let message = "E0517: no soil with pore-water flow has a free surface; all of it lies at restrained faces \
-                       of the grid. Give the drain a `face`, or `from` and `to`.";
+        let message = "E0517: no soil with pore-water flow has a free surface: all its edges lie at restrained \
+                       boundaries or other bodies. Replace `surface` by `face`, or by `from` and `to`.";
         record.consequence("surface", message, PERMEABLE, report);
         return None;
     }
@@ -502,7 +507,10 @@ pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) 
         let names = || drains.iter().filter_map(|drain| drain.text("name"));
         let near = record.text("drain").map(|name| hint(name, names())).unwrap_or_default();
         let end = if near.is_empty() { "." } else { &near };
-        let message = format!("E0518: the case has no such [[drain]]. Correct its name or face, or add the drain{end}");
+        let message = format!(
+            "E0518: no [[drain]] of the case has this name or face. Correct the name or face, or \
+                               add a drain{end}"
+        );
         record.consequence(key, message, &["drain"], report);
         return None;
     }

@@ -66,8 +66,8 @@ pub(super) fn shrink(
     let Some(analysis) = root.record("analysis").filter(|_| is_sought(root) && !report.failed()) else { return 1.0 };
     let farthest = moved.paths().map(|path| path.farthest()).fold(0.0, f64::max);
     if farthest == 0.0 {
-        let message = "E0442: a limit load needs a prescribed displacement, and the case has none. Give [footing], [[prescribed]] \
-                       or [[rigid]] one, or use `bsmpm fos`.";
+        let message = "E0442: a limit load needs a prescribed displacement, and the case has none. Give [footing], \
+                       [[prescribed]] or [[rigid]] a displacement, or find a factor of safety with `bsmpm fos`.";
         analysis.error(KEY, message, report);
         return 1.0;
     }
@@ -102,7 +102,8 @@ pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, re
     refuse_motions(case, analysis, &prepared.inside_cells, report);
     if case.solver.force_tolerance > FORCE_TOLERANCE {
         let message = format!(
-            "E0451: the tolerance is above {FORCE_TOLERANCE:e}, so limit loads would be several per cent too high. Delete this key."
+            "E0451: `force_tolerance` is above {FORCE_TOLERANCE:e}, so limit loads would be several per cent too \
+             high. Delete `force_tolerance`."
         );
         root.record("solver").into_iter().for_each(|solver| solver.error("force_tolerance", &message, report));
     }
@@ -118,27 +119,28 @@ pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, re
 fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
     if case.analysis.kind != AnalysisType::QuasiStatic {
         let message = format!(
-            "E0443: a limit load needs a quasi-static analysis, and this one is {}. Use analysis.type = \"quasi-static\".",
+            "E0443: a limit load needs a quasi-static analysis, but the type of this analysis is \"{}\". Use \
+             analysis.type = \"quasi-static\".",
             case.analysis.kind
         );
         analysis.error(KEY, message, report);
     }
     if case.flow.is_some() {
-        let message = "E0444: a limit load is not available with groundwater flow, because pore pressures depend on the stiffness, \
-                       which is raised. Delete `purpose`, or drainage = \"coupled\".";
+        let message = "E0444: a limit-load analysis raises Young's moduli, which would change the pore pressures of \
+                       soil with pore-water flow. Delete `purpose`, or `drainage` of all materials.";
         analysis.error(KEY, message, report);
     }
     let is_divided = case.stages.iter().any(|stage| stage.strength_reduction.is_some());
     if case.strength_reduction.is_some() || is_divided {
-        let message = "E0445: a limit load and strength reduction cannot be combined, because both change the stiffness. Delete one \
-                       of them.";
+        let message = "E0445: a limit load and strength reduction cannot be combined, because both change the \
+                       stiffness. Delete analysis.purpose, or the strength reduction.";
         analysis.error(KEY, message, report);
     }
     let follows_strain = |material: &Material| material.softens() || material.hardens() || !material.is_linear();
     if let Some(named) = case.materials.iter().find(|named| follows_strain(&named.material)) {
         let message = format!(
-            "E0446: material `{}` hardens, softens or is non-linear, so it has no limit load independent of displacement. Use \
-             constant strength and stiffness, or delete `purpose`.",
+            "E0446: the strength or stiffness of material `{}` changes with strain, so its load at failure depends \
+             on the displacement. Use a model with constant parameters, or delete `purpose`.",
             named.name
         );
         analysis.error(KEY, message, report);
@@ -149,16 +151,16 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
 fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], report: &mut Report<'_>) {
     if let Some(rigid) = case.rigid.iter().find(|rigid| !rigid.rotation.is_empty() || rigid.free.contains(&true)) {
         let message = format!(
-            "E0447: rigid body `{}` rotates or is free, but a limit load is found along a prescribed path. Delete its `rotation` and \
-             `free`.",
+            "E0447: rigid body `{}` rotates or moves freely, but a limit load needs a prescribed translation. Delete \
+             `rotation` and `free` of this rigid body.",
             rigid.name
         );
         analysis.error(KEY, message, report);
     }
     if let Some(name) = inside_cells.first() {
         let message = format!(
-            "E0448: `{name}` ends inside a cell, so its limit load cannot be extrapolated to finer grids. Put a grid line there with \
-             grid.cell or [grid.knots]."
+            "E0448: `{name}` ends inside a cell, so its limit load cannot be extrapolated to finer grids. Put a grid \
+             line at this end with grid.cell or [grid.knots]."
         );
         analysis.error(KEY, message, report);
     }
@@ -167,14 +169,14 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
     let rigid = case.rigid.iter().map(|rigid| &rigid.path);
     let mut paths = strips.clone().map(|(_, path)| path).chain(rigid);
     if paths.any(|path| path.moves() && !goes_on(path, case.analysis.end)) {
-        let message = "E0449: a prescribed path stops or turns back before the end of the analysis, where the limit load is read. \
-                       Let the displacement grow until analysis.end.";
+        let message = "E0449: a prescribed displacement stops or turns back before analysis.end, but the limit load \
+                       is read at the end. Let the displacement grow until analysis.end.";
         analysis.error(KEY, message, report);
     }
     if let Some(side) = strips.filter(|(_, path)| path.moves()).find_map(|(site, path)| opposed(case, site, path)) {
         let message = format!(
-            "E0450: boundary `{side}` restrains the ground where a displacement is prescribed, so the limit load would be zero. Use \
-             boundary.{side} = \"free\"."
+            "E0450: boundary `{side}` restrains the soil where a displacement is prescribed, so the recorded load \
+             would be zero. Use boundary.{side} = \"free\"."
         );
         analysis.error(KEY, message, report);
     }
@@ -211,14 +213,14 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
     let most = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(POINTS);
     if dilates && most > POINTS {
         report.warn(format!(
-            "W0423: body.points_per_cell: {most} points make dilating soil too stiff. Limit loads are up to 20 % higher than with \
-             {POINTS}. Use points_per_cell = {POINTS}."
+            "W0423: body.points_per_cell: with {most} points along each axis of a cell, limit loads of dilating soil \
+             are up to 20 % too high. Use points_per_cell = {POINTS}."
         ));
     }
     if case.grid.order != 2 {
         report.warn(
-            "W0424: grid.degree: limit loads are verified with quadratic splines only. With others the error of the extrapolated load \
-             is unknown. Use \"quadratic\".",
+            "W0424: grid.degree: limit loads are verified with quadratic splines only, so the error of the \
+             extrapolated load is unknown. Use grid.degree = \"quadratic\".",
         );
     }
     let is_far_off = |named: &&NamedMaterial| {
@@ -227,8 +229,8 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
     };
     if let Some(named) = case.materials.iter().find(is_far_off) {
         report.warn(format!(
-            "W0425: material.{}: the dilation angle is below half of the friction angle. The limit load is not unique, and varies by \
-             some per cent with steps and cells. Compare with dilation_angle = friction_angle.",
+            "W0425: material.{}: with a dilation angle below half the friction angle, limit loads vary by some per \
+             cent with the grid. Compare the load for dilation_angle = friction_angle.",
             named.name
         ));
     }
@@ -254,8 +256,8 @@ fn warn_of_averages(case: &Case, report: &mut Report<'_>) {
     };
     if let Some(named) = case.materials.iter().find(is_loose) {
         report.warn(format!(
-            "W0426: stabilisation.method: \"consistent-f-bar\" is inaccurate for `{}`, which dilates with little cohesion. The load is \
-             up to 42 % off. Use \"none\" and points_per_cell = 2.",
+            "W0426: stabilisation.method: loads on `{}`, which dilates and has little cohesion, are up to 42 % wrong \
+             with this method. Use method = \"none\" with points_per_cell = 2.",
             named.name
         ));
     }
@@ -280,8 +282,8 @@ fn small_cohesions(case: &Case, loads: &[SoughtLoad], report: &mut Report<'_>) -
             continue;
         };
         report.warn(format!(
-            "W0427: material.{}: the cohesion is small, c / (gamma B) = {share:.1e} with the width B of the load. It still raises the \
-             limit load by some per cent. Use cohesion = 0 if you do not mean it.",
+            "W0427: material.{}: the cohesion is small, c / (gamma B) = {share:.1e} (B: width of the load), but \
+             raises the limit load. If the soil has no cohesion, set cohesion = 0.",
             named.name
         ));
         small.push(named.name.clone());

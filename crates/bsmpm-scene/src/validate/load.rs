@@ -138,7 +138,7 @@ pub(super) fn force(
 fn warn_of_nothing(record: &Record, key: &str, load: [f64; 3], report: &mut Report<'_>) {
     if load == [0.0; 3] {
         report.warn(format!(
-            "W0401: {}: the load is zero and has no effect. Give a value, or delete it.",
+            "W0401: {}: this load is zero and has no effect. Give a value, or delete the load.",
             record.path_of(key)
         ));
     }
@@ -147,7 +147,8 @@ fn warn_of_nothing(record: &Record, key: &str, load: [f64; 3], report: &mut Repo
 /// Says that no body lies at a place of a load, m.
 fn no_body(at: &[f64]) -> String {
     format!(
-        "E0401: no body lies at {at:?} at the start. Move it onto a body, at most half the spacing of material points away."
+        "E0401: no body lies at {at:?} m at the start, so nothing carries this load. Move the load to a body (at \
+         most half a spacing of material points away)."
     )
 }
 
@@ -172,8 +173,8 @@ fn course(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> 
         if let Some(end) = around.end.filter(|end| ramp > *end) {
             let path = record.path_of("ramp");
             report.warn(format!(
-                "W0402: {path}: the load grows until t = {ramp}, but the analysis ends at t = {end}. It never acts in full. \
-                 Reduce the ramp, or increase analysis.end."
+                "W0402: {path}: the load grows until t = {ramp}, but the analysis ends at t = {end}, so the load \
+                 never acts in full. Reduce `ramp`, or increase analysis.end."
             ));
         }
         return Some((ramp, Vec::new()));
@@ -218,8 +219,8 @@ pub(super) fn warn_of_late(
     let Some(end) = end else { return };
     if let Some(t) = times.find(|t| *t > end) {
         report.warn(format!(
-            "W0403: {path}: the row at t = {t} is after the end of the analysis, t = {end}. It is not reached. Increase \
-             analysis.end, or delete the row."
+            "W0403: {path}: the row at t = {t} is after the end of the analysis at t = {end}, so its values are \
+             never reached. Increase analysis.end, or delete the row."
         ));
     }
 }
@@ -230,8 +231,8 @@ fn coarse(path: &str, times: impl Iterator<Item = f64> + Clone, dt: Option<f64>,
     let interval = intervals.fold(f64::INFINITY, f64::min);
     if let Some(dt) = dt.filter(|dt| interval < 0.999 * dt) {
         report.warn(format!(
-            "W0404: {path}: rows are {interval} apart in time, but a step is {dt} long. Peaks between two steps are missed. Use \
-             analysis.dt = {interval}."
+            "W0404: {path}: rows are {interval} apart in time, but a step is {dt} long, so peaks between two steps \
+             are missed. Set analysis.dt = {interval}."
         ));
     }
 }
@@ -239,7 +240,8 @@ fn coarse(path: &str, times: impl Iterator<Item = f64> + Clone, dt: Option<f64>,
 /// Says that the first number of a row, called `name`, is not larger than that of the row before.
 pub(super) fn not_increasing(name: &str, value: f64, before: f64) -> String {
     format!(
-        "E0402: {name} = {value} in this row is not larger than {before} in the row before. Sort the rows, and delete repeated ones."
+        "E0402: {name} = {value} in this row is not larger than {before} in the row before. Sort the rows by {name}, \
+         and delete repeated rows."
     )
 }
 
@@ -251,7 +253,7 @@ pub(super) fn increasing<'a>(
 ) -> Option<impl Iterator<Item = &'a [f64]> + use<'a>> {
     let rows = record.rows(key)?;
     if rows.is_empty() {
-        record.error(key, "E0435: the table is empty. Give at least one row.", report);
+        record.error(key, "E0435: this list of rows is empty. Give at least one row.", report);
         return None;
     }
     if let Some(late) = (1..rows.len()).find(|&k| rows[k].numbers[0] <= rows[k - 1].numbers[0]) {
@@ -278,14 +280,14 @@ pub(super) fn initial(
     let record = root.record("initial");
     let elastic = record.is_some_and(|record| record.gives("gravity"));
     if record.is_none() || elastic {
-        let what = if elastic { "[initial] has `gravity`" } else { "the case has no [initial]" };
+        let (what, instead) = match elastic {
+            true => ("initial.gravity = \"elastic\" replaces initial stresses from k0", "delete initial.gravity"),
+            false => ("the case has no [initial]", "add a table [initial]"),
+        };
         for (_, material) in root.named("material") {
             let is_k0 = |key: &&str| material.gives(key) && (*key == "k0" || is_of_k0(material));
             if let Some(key) = ["k0", "ocr"].into_iter().find(is_k0) {
-                let message = format!(
-                    "E0405: it has no effect, because {what}. Initial stresses by k0 need [initial] without `gravity`. \
-                     Delete this key, or change [initial]."
-                );
+                let message = format!("E0405: `{key}` has no effect, because {what}. Delete `{key}`, or {instead}.");
                 material.error(key, message, report);
             }
         }
@@ -300,8 +302,8 @@ pub(super) fn initial(
     let dims = root.word::<Geometry>("geometry")?.dims();
     if let Some(gravity) = gravity.filter(|of| !of.acts_down(dims, regime)) {
         let message = format!(
-            "E0406: gravity {:?} does not act straight down. Initial stresses by k0 balance vertical gravity only. Correct it, or \
-             use initial.gravity = \"elastic\".",
+            "E0406: gravity.acceleration = {:?} m/s2 is not vertical, but initial stresses from k0 balance only \
+             vertical gravity. Correct gravity.acceleration, or use initial.gravity = \"elastic\".",
             &gravity.acceleration[..dims]
         );
         root.record("gravity")?.error("acceleration", message, report);
@@ -318,8 +320,8 @@ pub(super) fn shaking(
     const KEY: &str = "acceleration";
     let Some(record) = root.record("shaking") else { return Vec::new() };
     if regime == Some(Regime::QuasiStatic) {
-        let message = "E0414: a quasi-static analysis has no inertia, so shaking has no effect. Use analysis.type = \
-                       \"dynamic\", or a horizontal part of gravity.acceleration (pseudo-static).";
+        let message = "E0414: a quasi-static analysis has no inertia, so [shaking] has no effect. Use analysis.type \
+                       = \"dynamic\", or give gravity.acceleration a horizontal component (pseudo-static).";
         report.error(record.origin, &record.path, message);
     }
     let Some(rows) = increasing(record, KEY, report) else { return Vec::new() };
@@ -370,8 +372,8 @@ pub(super) fn sudden(case: &Case, report: &mut Report<'_>) {
     }
     for load in case.sudden_loads() {
         report.warn(format!(
-            "W0405: {load}: it acts in full from t = 0, but initial stresses by k0 balance the weight alone. The first step \
-             applies all of it at once. Give it a ramp."
+            "W0405: {load}: the first step applies the whole load at once, because initial stresses from k0 balance \
+             the weight only. Give the load a `ramp`."
         ));
     }
 }
@@ -388,7 +390,7 @@ fn loaded(
         report.error(
             record.origin,
             &record.path,
-            "E0407: initial stresses follow from the weight, but the case has no gravity. Add [gravity].",
+            "E0407: initial stresses follow from the weight of the soil, but the case has no gravity. Add [gravity].",
         );
     }
     let dims = root.word::<Geometry>("geometry").map_or(3, Geometry::dims);
@@ -397,7 +399,8 @@ fn loaded(
         && gravity.is_straight(dims)
     {
         let message = format!(
-            "E0409: initial stresses include the full weight, but gravity grows until t = {}. Delete gravity.ramp, or [initial].",
+            "E0409: [initial] balances the full weight at t = 0, but gravity.ramp lets gravity grow until t = {}. \
+             Delete gravity.ramp, or [initial].",
             gravity.ramp
         );
         written.error("ramp", message, report);
@@ -405,8 +408,8 @@ fn loaded(
     if let (Some(materials), Some(bodies)) = (materials, bodies)
         && bodies.iter().all(|body| materials[body.material].density.is_none())
     {
-        let message = "E0408: initial stresses follow from the weight, but no body has any. Give `density` or `unit_weight` in \
-                       [material].";
+        let message = "E0408: initial stresses follow from the weight of the soil, but no body has weight. Give \
+                       `density` or `unit_weight` in [material].";
         report.error(record.origin, &record.path, message);
     }
 }
@@ -425,8 +428,8 @@ fn is_of_k0(material: &Record) -> bool {
 fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
     let (ocr, friction) = (material.number("ocr")?, profile(material, "friction_angle")?);
     if friction.per_metre != 0.0 {
-        let message = "E0410: k0 follows from `ocr` and the friction angle, which varies with depth here. Give `k0`, or layers \
-                       with a constant friction angle.";
+        let message = "E0410: k0 would follow from `ocr` and the friction angle, but the friction angle varies with \
+                       depth and k0 cannot. Give `k0`, or layers with a constant friction angle.";
         material.error("ocr", message, report);
         return None;
     }
@@ -435,8 +438,8 @@ fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
     let cohesion = profile(material, "cohesion")?;
     if k0 > passive && cohesion.value == 0.0 && cohesion.per_metre == 0.0 {
         let message = format!(
-            "E0411: `ocr` = {ocr} gives k0 = {k0:.4}, above the passive limit {passive:.4}. The soil would fail at the start. \
-             Reduce `ocr`."
+            "E0411: `ocr` = {ocr} gives k0 = {k0:.4}, above the passive limit Kp = {passive:.4}, so the soil would \
+             fail at the start. Reduce `ocr`."
         );
         material.error("ocr", message, report);
         return None;
@@ -462,13 +465,13 @@ fn at_rest(root: &Record, record: &Record, bodies: &[Body], report: &mut Report<
         if material.gives("k0") && is_of_k0(material) {
             material.error(
                 "ocr",
-                "E0412: `k0` is given as well, and would follow from `ocr`. Delete one of them.",
+                "E0412: `ocr` and `k0` are both given, but `ocr` already determines k0. Delete one of the two.",
                 report,
             );
         }
         if own.is_none() && bodies.iter().any(|body| body.material == number) {
             let message = format!(
-                "E0413: no k0 is given for material `{name}`, so its horizontal stress is unknown. Give initial.k0, \
+                "E0413: material `{name}` has no k0, so its initial horizontal stress is unknown. Give initial.k0, \
                  material.{name}.k0, or initial.gravity = \"elastic\"."
             );
             report.error(record.origin, &record.path, message);

@@ -117,8 +117,8 @@ fn read(
     let Reduction { factor, elastic, stiffness, is_for_limit_load } = around.reduction;
     let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
     if factor != 1.0 && !elastic && of_yield {
-        let message = "E0312: with strength_reduction.factor the yield surface that follows from `ocr` would grow \
-                       while the strength is reduced. Give `preconsolidation` instead of `ocr`.";
+        let message = "E0312: `ocr` cannot be combined with strength_reduction.factor: a reduced strength would \
+                       enlarge the initial yield surface. Give `preconsolidation` instead of `ocr`.";
         record.error("ocr", message, report);
     }
     let (young, poisson, law) = (young?, poisson?, law?);
@@ -165,8 +165,8 @@ impl Layer {
             let value = profile.at(y);
             if !range.contains(value) {
                 let message = format!(
-                    "E0303: the value is {value} at y = {y} m, where bodies of this material lie; allowed: {}. \
-                     Correct `value` or `per_metre`.",
+                    "E0303: the value at y = {y} m, inside a body of this material, is {value} (allowed: {}). \
+                     Correct `value` or `per_metre` of this parameter.",
                     range.condition(key)
                 );
                 record.error(key, message, report);
@@ -241,15 +241,15 @@ fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> 
     let saturated = record.number(KEY)? / STANDARD_GRAVITY;
     match density {
         None => {
-            let message =
-                "E0310: the material has no unit weight above the water table. Add `unit_weight` or `density`.";
+            let message = "E0310: `saturated_unit_weight` is given, but not the unit weight above the water table. Add \
+                 `unit_weight` or `density`.";
             record.error(KEY, message, report);
         }
         Some(dry) if saturated < dry => {
             let [wet, dry] = [saturated, dry].map(|density| density * STANDARD_GRAVITY * 1e-3);
             let message = format!(
                 "E0309: the saturated unit weight ({wet:.6} kN/m3) is below the unit weight above the water table \
-                 ({dry:.6} kN/m3). Correct one of them."
+                 ({dry:.6} kN/m3). Correct one of the two unit weights."
             );
             record.error(KEY, message, report);
         }
@@ -283,7 +283,8 @@ fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, 
     let least = if record.has_unit("young") { 1e3 } else { 0.0 };
     if let Some(young) = young.filter(|young| !(least..=1e12).contains(young)) {
         report.warn(format!(
-            "W0302: {}: Young's modulus is {} kPa; usual are 1 kPa to 1000 GPa. Check the unit of `young`.",
+            "W0302: {}: a Young's modulus of {} kPa is unusual (usual: 1 kPa to 1000 GPa). Check the unit of \
+             `young`.",
             record.path,
             young * 1e-3
         ));

@@ -66,12 +66,12 @@ fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
             continue;
         }
         if !matches!(case.initial, Some(Initial::AtRest(_))) {
-            let message = "E0318: the stiffness of this model follows the stress, so it needs initial stresses. Add \
-                           [initial] with `k0`.";
+            let message = "E0318: the stiffness of this model depends on the stress, so the case needs initial \
+                           stresses. Add [initial] with `k0` and without `gravity`.";
             written.error("model", message, report);
         } else if named.density.is_none() {
             let message = format!(
-                "E0310: without weight material.{name} has no initial stress, from which its stiffness follows. Add \
+                "E0310: material.{name} has no weight, so its initial stress and its stiffness would be zero. Add \
                  `unit_weight` or `density`."
             );
             report.error(written.origin, &written.path, message);
@@ -96,12 +96,13 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
                      `rate_parameter` and `reference_rate`."
                 }
                 (_, true) => {
-                    "E0319: a rate-dependent strength needs real time. Use analysis.type = \"quasi-static-rate\" or \
-                     \"dynamic\", or remove `rate_parameter` and `reference_rate`."
+                    "E0319: a rate-dependent strength needs real time, which a quasi-static analysis does not have. \
+                     Use type = \"quasi-static-rate\" or \"dynamic\", or remove `rate_parameter` and \
+                     `reference_rate`."
                 }
                 (_, false) => {
-                    "E0319: the strength of this model depends on the rate, which is available in dynamics only. Use \
-                     analysis.type = \"dynamic\"."
+                    "E0319: the strength of this model depends on the strain rate, which needs a dynamic analysis. \
+                     Use analysis.type = \"dynamic\"."
                 }
             };
             let key = if is_of_clay { "rate_parameter" } else { "model" };
@@ -110,8 +111,8 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let slowest = written.number("reference_rate").filter(|_| is_of_clay).map(|rate| rate * case.analysis.dt);
         if let Some(strain) = slowest.filter(|strain| *strain < DIGITS) {
             report.warn(format!(
-                "W0312: {}: the strain of one step at this rate is {strain:.1e} (limit {DIGITS:e}), too small for an \
-                 accurate strength. Increase `reference_rate`, and give the cohesion at that rate.",
+                "W0312: {}: at this rate the strain of one step is only {strain:.1e} (at least {DIGITS:e}), so the \
+                 strength is inaccurate. Increase `reference_rate`, and give the cohesion for the new rate.",
                 written.path_of("reference_rate")
             ));
         }
@@ -339,7 +340,8 @@ pub(super) fn reached(case: &Case, axis: usize, upper: bool) -> bool {
 fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
     for (_, material) in case.materials.iter().enumerate().filter(|(number, _)| !case.is_followed(*number)) {
         report.warn(format!(
-            "W0313: material.{}: no body consists of this material. Assign it to a body, or remove it.",
+            "W0313: material.{}: no body consists of this material. Assign the material to a body, or remove the \
+             material.",
             material.name
         ));
     }
@@ -390,8 +392,8 @@ fn warn_of_locking(case: &Case, report: &mut Report<'_>) {
             false => continue,
         };
         report.warn(format!(
-            "W0315: stabilisation: material.{} {reason}: without stabilisation it is too stiff (locking) and its \
-             stress oscillates. Use method = \"consistent-f-bar\".",
+            "W0315: stabilisation: material.{} {reason}, so without stabilisation it is too stiff (locking) and its \
+             stress oscillates. Set stabilisation.method = \"consistent-f-bar\".",
             named.name
         ));
         return;

@@ -18,7 +18,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     if !case.carries_pressure() {
         report.warn(format!(
             "W0313: {}: no body consists of this material, so `ru` has no effect. Assign the material to a body, or \
-             remove it.",
+             remove the material.",
             material.path_of(KEY)
         ));
         return;
@@ -34,13 +34,14 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
     match &case.gravity {
         None => {
-            let message = "E0321: a pore pressure ratio needs the weight of the ground. Add [gravity].";
+            let message = "E0321: `ru` relates the pore pressure to the weight of the soil, but the case has no \
+                           gravity. Add [gravity].";
             material.error(KEY, message, report);
         }
         Some(gravity) if !gravity.acts_down(case.grid.dims(), Some(case.analysis.regime)) => {
             let message = format!(
-                "E0321: a pore pressure ratio needs vertical gravity, and gravity.acceleration = {:?}. Set its other \
-                 components to 0.",
+                "E0321: the pore pressure ratio `ru` needs vertical gravity, but gravity.acceleration = {:?}. Set \
+                 the horizontal components of gravity.acceleration to 0.",
                 &gravity.acceleration[..case.grid.dims()]
             );
             material.error(KEY, message, report);
@@ -50,12 +51,13 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let changes = |stage: &crate::case::Stage| !(stage.add.is_empty() && stage.remove.is_empty());
     let exchanges = |stage: &crate::case::Stage| stage.materials.iter().any(|&(from, to)| wet(from) || wet(to));
     if case.stages.iter().any(|stage| changes(stage) || exchanges(stage)) {
-        let message = "E0322: the pore pressure from `ru` cannot follow stages that add or remove bodies or change \
-                       materials. Use [water], or leave out these stages.";
+        let message = "E0322: the pore pressure from `ru` would be wrong after a stage that adds, removes or changes \
+                       soil. Use [water] instead of `ru`, or delete these stages.";
         material.error(KEY, message, report);
     }
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
-        let message = "E0322: the pore pressure from `ru` cannot follow an earthquake. Remove `ru` or [shaking].";
+        let message = "E0322: the pore pressure from `ru` is constant, but an earthquake would change the pore \
+                       pressure. Remove `ru` or [shaking].";
         material.error(KEY, message, report);
     }
     for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
@@ -92,8 +94,8 @@ fn warn_of_thin_bodies(case: &Case, report: &mut Report<'_>) {
         let thickest = thickest.fold(0.0, f64::max);
         if thickest < edge {
             report.warn(format!(
-                "W0316: ru: bodies on a boundary with friction are {thickest:.3} m thick, less than a cell of \
-                 {edge:.3} m. The friction is up to 30 % too large. Use smaller cells."
+                "W0316: ru: bodies on a boundary with friction are thinner ({thickest:.3} m) than a cell ({edge:.3} \
+                 m), so friction is up to 30 % too large. Use smaller cells."
             ));
         }
     }

@@ -35,8 +35,11 @@ pub(super) fn read_all(
     for record in root.records("rigid") {
         let Some(rigid) = read((record, geometry), around, factor, report) else { continue };
         if found.iter().any(|other| other.name == rigid.name) {
-            let message =
-                format!("E0421: another rigid body is called `{}` as well. Give each a name of its own.", rigid.name);
+            let message = format!(
+                "E0421: another rigid body is also called `{}`, so histories cannot tell which one is meant. \
+                         Give each rigid body its own `name`.",
+                rigid.name
+            );
             record.error("name", message, report);
         }
         found.push(rigid);
@@ -94,8 +97,9 @@ fn free(record: &Record, report: &mut Report<'_>) -> Option<[bool; 3]> {
     }
     for name in record.names("free")? {
         let Some(motion) = RigidMotion::of(name) else {
-            let allowed: Vec<&str> = RigidMotion::WORDS.words().collect();
-            let message = format!("E0422: `{name}` is not a motion of a rigid body. Use {}.", allowed.join(", "));
+            let allowed: Vec<String> = RigidMotion::WORDS.words().map(|word| format!("\"{word}\"")).collect();
+            let message =
+                format!("E0422: `{name}` is not a motion of a rigid body. Use one or more of: {}.", allowed.join(", "));
             record.error("free", message, report);
             return None;
         };
@@ -119,7 +123,8 @@ fn rotation(record: &Record, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>>
         load::increasing(record, "rotation", report)?.map(|row| (row[0], row[1].to_radians())).collect();
     if rows[0].0 == 0.0 && rows[0].1 != 0.0 {
         let message = format!(
-            "E0403: the rotation at t = 0 is {} degrees. A path begins at rest. Give zero there, or a row at a later time.",
+            "E0403: the rotation at t = 0 is {} degrees, but a path must begin with zero. Set this rotation to zero, \
+             or give the row a later time.",
             rows[0].1.to_degrees()
         );
         record.error("rotation", message, report);
@@ -148,8 +153,8 @@ fn friction(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Op
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
-            "W0409: {}: {friction} is above {MOST_SHOWN_FRICTION}, the largest verified coefficient. Steps may find no solution of \
-             Coulomb's law, or one of several. Use at most {MOST_SHOWN_FRICTION}.",
+            "W0409: {}: {friction} is above the largest verified friction coefficient, {MOST_SHOWN_FRICTION}, so \
+             steps may not converge. Use at most {MOST_SHOWN_FRICTION}.",
             record.path_of("friction_coefficient")
         ));
     }
@@ -180,21 +185,25 @@ fn moves_as_given(record: &Record, rigid: &Rigid, report: &mut Report<'_>) {
         }
     }
     if rigid.free.contains(&true) && record.gives("about") {
-        let message =
-            "E0425: a body that moves freely rotates about its centre of mass, not about this point. Delete `about`.";
+        let message = "E0425: a rigid body that moves freely rotates about its centre of mass, not about this point. Delete \
+             `about`.";
         record.error("about", message, report);
     }
 }
 
 /// Says that a motion is prescribed and free.
 fn prescribed_and_free(motion: &str) -> String {
-    format!("E0423: the {motion} is prescribed here, and also listed in `free`. Delete one of them.")
+    format!(
+        "E0423: the {motion} is prescribed by this key, but `free` lists it, too. Delete this key, or remove the \
+             {motion} from `free`."
+    )
 }
 
 /// Says that what acts on a motion, called `name` in `free`, has no effect on it.
 fn without_effect(motion: &str, name: &str) -> String {
     format!(
-        "E0424: this has no effect, because the {motion} is not `free`. Add \"{name}\" to `free`, or delete this key."
+        "E0424: this key has no effect, because the {motion} of the rigid body is not free. Add \"{name}\" to \
+         `free`, or delete this key."
     )
 }
 
@@ -203,24 +212,29 @@ fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, repor
     let is_free = rigid.free.contains(&true);
     if !is_free {
         for key in ["mass", "density", "inertia"].into_iter().filter(|key| record.gives(key)) {
-            let message =
-                "E0426: this has no effect, because no motion of the body is `free`. Delete this key, or give `free`.";
+            let message = format!(
+                "E0426: `{key}` has no effect, because all motions of this rigid body are prescribed. Delete `{key}`, or list \
+                 the free motions in `free`."
+            );
             record.error(key, message, report);
         }
     }
     let massless = rigid.mass[0] == 0.0 || rigid.free[2] && rigid.mass[1] == 0.0;
     if is_free && massless && regime == Some(Regime::Dynamic) {
-        let message = "E0427: in dynamic analysis a body that moves freely needs mass. Give `mass` or `density`.";
+        let message = "E0427: in a dynamic analysis a rigid body that moves freely needs mass, but this body has \
+                       none. Give `mass` or `density`.";
         record.error("free", message, report);
     }
     if is_free && rigid.mass[0] == 0.0 && rigid.force == [0.0; 3] {
-        let message = "E0428: the body is free to move, but has no weight and no load. Give `mass`, `density`, `force` or `moment`.";
+        let message = "E0428: this rigid body can move freely, but neither weight nor load acts on it. Give `mass`, \
+                       `density`, `force` or `moment`.";
         record.error("free", message, report);
     }
     for key in ["ramp", "amplitude"].into_iter().filter(|key| record.gives(key) && rigid.force == [0.0; 3]) {
         let path = record.path_of(key);
         report.warn(format!(
-            "W0410: {path}: this has no effect, because the body has no `force` or `moment`. Delete it, or give one of them."
+            "W0410: {path}: this key has no effect, because the rigid body has no `force` or `moment`. Delete this \
+             key, or give a force or moment."
         ));
     }
     for key in ["start_velocity", "start_spin"] {
@@ -255,8 +269,8 @@ fn fine_enough(
     let most = fastest.fold(0.0, f64::max);
     if most > ADVANCE * cell {
         report.warn(format!(
-            "W0411: {}: the body moves up to {:.2} cells in a step (verified: up to {ADVANCE}). It may pass soil without \
-             pushing it. Increase analysis.steps, or reduce analysis.dt.",
+            "W0411: {}: the rigid body moves up to {:.2} cells in a step (limit {ADVANCE}), so it may pass through \
+             soil without pushing it. Increase analysis.steps, or reduce analysis.dt.",
             record.path_of("path"),
             most / cell
         ));
@@ -265,8 +279,8 @@ fn fine_enough(
     let axis = (geometry == Geometry::Axisymmetric).then_some(-about[0]);
     if let Some((corner, angle)) = sharpest(&outline, axis).filter(|(_, angle)| 2.0 * (0.5 * angle).sin() < 1.0) {
         report.warn(format!(
-            "W0412: {}: the corner at [{}, {}] has {:.0} degrees. Corners below 60 degrees act as if rounded over a cell. Use \
-             smaller cells, or a blunter corner.",
+            "W0412: {}: the corner at [{}, {}] m has {:.0} degrees (limit 60), so it acts as if it were rounded over \
+             a cell. Use smaller cells, or a blunter corner.",
             record.path_of(shape::key(record)),
             corner[0] + about[0],
             corner[1] + about[1],
@@ -275,8 +289,8 @@ fn fine_enough(
     }
     if thickness < THICK * cell {
         report.warn(format!(
-            "W0413: {}: the body is {:.1} cells thick (at least {THICK}). Soil on its two sides is coupled and does not separate \
-             from it. Use cells of at most {:.3e} m if it has soil on both sides.",
+            "W0413: {}: the rigid body is {:.1} cells thick (limit {THICK}), so soil on one side sticks to soil on \
+             the other. If there is soil on both sides, use cells of at most {:.3e} m.",
             record.path_of(shape::key(record)),
             thickness / cell,
             thickness / THICK
@@ -338,22 +352,22 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (number, (rigid, record)) in case.rigid.iter().zip(root.records("rigid")).enumerate() {
         if rigid.velocity != [0.0; 3] && case.acts_since(Acting::Rigid(number), 0.0).is_none() {
             let key = if record.gives("start_velocity") { "start_velocity" } else { "start_spin" };
-            let message = "E0430: a stage adds this body later and at rest, so it has no velocity at the start. Let a `force` or \
-                           gravity move it.";
+            let message = "E0430: a stage adds this rigid body later, so its initial velocity has no effect. Delete \
+                           this key, and let `force` or gravity move the body.";
             record.error(key, message, report);
         }
         if case.settles || case.initial == Some(Initial::Elastic) {
             report.warn(format!(
-                "W0414: {}: the equilibrium of [initial] is found without rigid bodies. Soil that they support moves at the start. \
-                 Use initial.k0 alone, or gravity.ramp without [initial].",
+                "W0414: {}: rigid bodies take no part in the equilibrium of [initial], so soil that they support \
+                 moves at the start. Use initial.k0 alone, or gravity.ramp without [initial].",
                 record.path
             ));
         }
         let absorbs = case.is_ever(Support::Absorbing) || case.is_ever(Support::FreeField);
         if absorbs && case.gravity.is_some() {
             report.warn(format!(
-                "W0415: {}: absorbing boundaries carry the initial stresses only, which do not include rigid bodies. The ground \
-                 drifts under the weight of this one. Fix one boundary.",
+                "W0415: {}: absorbing boundaries carry no permanent load, so the ground sinks steadily under the \
+                 weight of this rigid body. Set one boundary to \"fixed\".",
                 record.path
             ));
         }
@@ -381,15 +395,18 @@ fn together(case: &Case, rigid: usize, body: usize) -> Option<Option<&Stage>> {
 fn inside(case: &Case, (rigid, body): (usize, usize), at: &str) -> String {
     let stage = together(case, rigid, body).flatten();
     let (when, or) = match stage {
-        None => ("at the start".to_owned(), ""),
-        Some(stage) if stage.add.contains(&body) => (format!("when a stage adds it at t = {}", stage.at), ""),
-        Some(stage) => {
-            (format!("when a stage adds the rigid body at t = {}", stage.at), ", or remove that body in this stage")
+        None => ("at the start".to_owned(), String::new()),
+        Some(stage) if stage.add.contains(&body) => {
+            (format!("when a stage adds body.{body} at t = {}", stage.at), String::new())
         }
+        Some(stage) => (
+            format!("when a stage adds the rigid body at t = {}", stage.at),
+            format!(", or remove body.{body} in this stage"),
+        ),
     };
     format!(
-        "E0431: body.{body} overlaps this rigid body at [{at}] by more than {OVERLAP} cells {when}. Subtract the shape of the \
-         rigid body from body.{body}{or}."
+        "E0431: body.{body} overlaps this rigid body at [{at}] m by more than {OVERLAP} cells {when}. Subtract the \
+         shape of the rigid body from body.{body}{or}."
     )
 }
 
@@ -406,11 +423,14 @@ fn joined(case: &Case, (number, rigid): (usize, &Rigid), record: &Record, report
     let mut joined = (0..case.bodies.len()).filter_map(joins);
     let found = joined.find(|(body, stage)| is_near(*body, moves && stage.add.contains(body)));
     let Some((body, stage)) = found else { return };
-    let added =
-        if stage.add.contains(&body) { format!("body.{body} next to it") } else { format!("it next to body.{body}") };
+    let added = if stage.add.contains(&body) {
+        format!("body.{body} next to this rigid body")
+    } else {
+        format!("this rigid body next to body.{body}")
+    };
     report.warn(format!(
-        "W0416: {}: a stage adds {added}. Material points within half a spacing are pushed off the rigid body in one step, \
-         which strains them. Leave a gap of half a spacing.",
+        "W0416: {}: a stage adds {added}: material points closer than half their spacing are pushed away in one \
+         step, and strained. Leave a gap of half a spacing of material points.",
         record.path
     ));
 }

@@ -108,8 +108,8 @@ pub(super) fn warn_of_neighbours(case: &Case, root: &Record, report: &mut Report
             if cut.span(&places).is_some_and(|span| cut.misses(case, span)) {
                 let cells = cut.reach / cut.cell;
                 report.warn(format!(
-                    "W0428: {}: `{name}` acts within {cells} cells of the section. The section forces contain an arbitrary part of \
-                     its force. Move the section {cells} cells away, or use smaller cells.",
+                    "W0428: {}: `{name}` acts within {cells} cells of this section, so the section forces include an \
+                     arbitrary part of its force. Move the section {cells} cells away, or use smaller cells.",
                     record.path
                 ));
             }

@@ -28,8 +28,8 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
         None => (record.word("interface")?, None),
     };
     if base == Base::Smooth && contact.is_none() && normal_part(&path, site) <= NOTHING * path.farthest() {
-        let message = "E0416: a smooth base acts along its normal only, and this motion has no part along it. The soil would not \
-                       be loaded. Use interface = \"rough\", or change the motion.";
+        let message = "E0416: a smooth footing acts only perpendicular to its base, but this motion is parallel to \
+                       the base and would not load the soil. Use interface = \"rough\", or change the motion.";
         record.error(motion(record), message, report);
     }
     Some(Footing { site, path, base, contact, rests: false })
@@ -46,25 +46,25 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             Site::Face(face) => {
                 inward(record, face, &path, report);
                 if found.iter().any(|other| other.site == site) {
-                    let message =
-                        "E0417: the motion of this face is prescribed already. Combine both in one [[prescribed]].";
+                    let message = "E0417: another [[prescribed]] already moves this face of the grid. Combine both motions in \
+                         one [[prescribed]].";
                     record.error("face", message, report);
                 }
             }
             Site::Segment { .. } | Site::Plate(_) => stays_inside(record, site, &path, around, report),
         }
-        let frictional = match site {
+        let given = match site {
             Site::Segment { .. } | Site::Plate(_) => contact_of((root, record), "components", site, around, report),
             Site::Face(_) => {
                 if record.record("components").is_some() {
-                    let message = "E0418: contact is not available on a moving face of the grid. Use a segment (`from`, `to`) \
-                                   inside the grid instead.";
+                    let message = "E0418: contact is not available on a moving face of the grid. Replace `face` by a \
+                                   segment (`from`, `to`) inside the grid.";
                     record.error("components", message, report);
                 }
                 None
             }
         };
-        let (base, contact) = match frictional {
+        let (base, contact) = match given {
             Some(Some(contact)) => contact,
             Some(None) => continue,
             None => (record.word("components").unwrap_or(Components::All).base(), None),
@@ -88,16 +88,16 @@ fn contact_of(
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return Some(None) };
     let bodies: Vec<&Body> = bodies.iter().collect();
     let Some(side) = side_of_bodies(grid, |off| with_body(site, off, (grid, &bodies))) else {
-        let message = "E0404: bodies lie on both sides of this surface, or on neither. Contact acts on one side only. Move the \
-                       surface to that of a body.";
+        let message = "E0404: contact needs soil on exactly one side of this surface, but bodies lie on both sides \
+                       or on neither. Move this surface to the free surface of a body.";
         record.error(key, message, report);
         return Some(None);
     };
     let regime = root.record("analysis").and_then(|analysis| analysis.word("type"));
     if regime == Some(AnalysisType::Dynamic) {
         report.warn(format!(
-            "W0406: {}: contact is verified in quasi-static analysis only. In dynamic analysis an impact may create or dissipate \
-             energy. Check the energy history.",
+            "W0406: {}: this contact is verified in quasi-static analysis only: in dynamics, impacts may create or \
+             lose energy. Record the energy in a [[history]], and check the energy balance.",
             record.path_of(key)
         ));
     }
@@ -139,8 +139,8 @@ fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Ve
             _ if k == 0 && t == 0.0 && u == [0.0; 3] => continue,
             _ if k == 0 && t == 0.0 => {
                 let message = format!(
-                    "E0403: the displacement at t = 0 is {along:?} m. A path begins at rest. Give zeros there, or a row at a \
-                     later time."
+                    "E0403: the displacement at t = 0 is {along:?} m, but a path must begin with zero. Set this row \
+                     to zeros, or give the row a later time."
                 );
                 report.error(row.origin, &key, message);
                 return None;
@@ -177,7 +177,7 @@ fn stays_inside(record: &Record, site: Site, path: &MotionPath, around: AroundSt
         |(t, u): &(f64, [f64; 3])| Some((*t, corners.into_iter().find_map(|end| is_beyond(grid, at(end, *u)))?));
     if let Some((t, outside)) = path.rows.iter().find_map(beyond) {
         let message = format!(
-            "E0419: the motion leaves the grid: at t = {t}, {outside}. Reduce the motion, or enlarge the grid."
+            "E0419: at t = {t} this motion leaves the grid: {outside}. Reduce the motion, or enlarge the grid."
         );
         record.error(motion(record), message, report);
     }
@@ -187,8 +187,8 @@ fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_
     let outward = |u: f64| if face.upper { u > 0.0 } else { u < 0.0 };
     if let Some((t, u)) = path.rows.iter().find(|(_, u)| outward(u[face.axis])) {
         let message = format!(
-            "E0420: the face has moved out of the grid by {} m at t = {t}. A face can move inward or along itself only. Reverse \
-             the motion.",
+            "E0420: at t = {t} the face would be {} m outside the grid, but a face can move only inwards or along \
+             itself. Reverse the motion.",
             u[face.axis].abs()
         );
         record.error(motion(record), message, report);
@@ -213,12 +213,12 @@ pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
         let (name, history) = (name_of_strip(case, number), &history.name);
         report.warn(match support {
             Support::Roller => format!(
-                "W0407: `{name}` is inclined and ends at the roller boundary `{side}`, which carries a part of its force. That part \
-                 is missing in history `{history}`. Use the component along `{side}`."
+                "W0407: `{name}` is inclined and ends at the roller boundary `{side}`, so a part of its force is \
+                 missing in history `{history}`. Use only the force component along boundary `{side}`."
             ),
             _ => format!(
-                "W0408: `{name}` ends at the fixed boundary `{side}`, which carries a part of its force. That part is missing in \
-                 history `{history}`. Use boundary.{side} = \"roller\"."
+                "W0408: `{name}` ends at the fixed boundary `{side}`, so a part of its force goes into the boundary \
+                 and is missing in history `{history}`. Set boundary.{side} = \"roller\"."
             ),
         });
     }

@@ -27,8 +27,8 @@ pub(super) fn warn(case: &Case, water: &Water, report: &mut Report<'_>) {
         false => format!(" (at the start: {})", lacking.join(", ")),
     };
     report.warn(format!(
-        "W0429: water: it exerts no pressure on rigid bodies. Their buoyancy is missing{missing}. Reduce rigid.mass or \
-         rigid.force by it, and add the water pressure to recorded forces."
+        "W0429: water: [water] exerts no pressure on rigid bodies, so their buoyancy is missing{missing}. Reduce \
+         rigid.mass or rigid.force by the buoyancy, and add the water pressure to recorded forces."
     ));
 }
 

@@ -26,8 +26,8 @@ pub(super) fn read(
     let Some(record) = root.record("water") else {
         for (_, material) in root.named("material") {
             if material.gives("saturated_unit_weight") {
-                let message = "E0520: a saturated unit weight has no effect without a water table. Give \
-                               `water.level`, or remove the key.";
+                let message = "E0520: `saturated_unit_weight` has no effect, because the case has no water table. \
+                               Give `water.level`, or remove `saturated_unit_weight`.";
                 material.error("saturated_unit_weight", message, report);
             }
         }
@@ -35,8 +35,8 @@ pub(super) fn read(
     };
     if ["level", "level_path", "line", "line_path"].iter().all(|key| !record.gives(key)) {
         if !super::flow::flows(root) {
-            let message = "E0521: [water] has no water table, and no material has pore-water flow. Give one of \
-                           `level`, `level_path`, `line` and `line_path`, or remove [water].";
+            let message = "E0521: [water] gives no water table, and no material has pore-water flow, so [water] has \
+                           no effect. Give one of `level`, `level_path`, `line` and `line_path`, or remove [water].";
             report.error(record.origin, &record.path, message);
         }
         return None;
@@ -51,8 +51,8 @@ pub(super) fn read(
     let (acceleration, axes) = (gravity?.acceleration, grid?.dims());
     if !gravity?.acts_down(axes, regime) {
         let message = format!(
-            "E0523: {:?} m/s2 is not vertically downwards, as a hydrostatic pore pressure requires. Give a negative {} \
-             component only.",
+            "E0523: gravity of {:?} m/s2 is not vertical, but hydrostatic pore pressure needs gravity straight down. \
+             Give only a negative {} component.",
             &acceleration[..axes],
             ["x", "y", "z"][axes - 1]
         );
@@ -60,8 +60,8 @@ pub(super) fn read(
     }
     if !(8_000.0..=12_000.0).contains(&given) {
         report.warn(format!(
-            "W0520: {}: {given} N/m3 is unusual for water (8000 to 12000 N/m3), and pore pressures are \
-             proportional to it. Check the unit.",
+            "W0520: {}: {given} N/m3 is an unusual unit weight of water (8000 to 12000 N/m3), and scales all pore \
+             pressures. Check the unit.",
             record.path_of("unit_weight")
         ));
     }
@@ -88,16 +88,16 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
     let heights = || table.levels().into_iter().flatten();
     if !record.gives("suction") && heights().all(|row| row.1 <= base) {
         let message = format!(
-            "E0524: the water table is nowhere above the bottom of the grid ({axis} = {base} m), so it has no \
-             effect. Raise it, remove [water], or give `suction` for unsaturated soil."
+            "E0524: the water table never rises above the bottom of the grid ({axis} = {base} m), so it has no \
+             effect. Raise the water table, remove [water], or give `suction` for unsaturated soil."
         );
         record.error(key, message, report);
         return None;
     }
     if let Some((t, _)) = heights().find(|(t, _)| end.is_some_and(|end| *t > end)) {
         report.warn(format!(
-            "W0521: {}: the row at t = {t} s is after the end of the run, which does not reach it. Increase \
-             `analysis.end`, or remove the row.",
+            "W0521: {}: the row at t = {t} s is after the end of the analysis, so its water level is never reached. \
+             Increase `analysis.end`, or remove the row.",
             record.path_of(key)
         ));
     }
@@ -116,20 +116,20 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
         let wrong = if number < count {
             let message = || {
                 format!(
-                    "E0525: x = {x} m is not greater than x of the row before. List the points of the line with x \
-                     increasing."
+                    "E0525: x = {x} m is not greater than x of the previous row. Sort the points of the phreatic \
+                     line by x."
                 )
             };
             (at > 0 && places[at - 1].x >= x).then(message)
         } else if places[at].x != x || (at > 0 && rows[number - 1].numbers[0] != t) {
             Some(format!(
-                "E0525: at t = {t} s the line has a point x = {x} m that differs from the line of the first time. \
-                 Repeat the same x, in the same order, at each time."
+                "E0525: the point at x = {x} m of the phreatic line at t = {t} s does not match the line at the \
+                 first time. Give the same values of x, in the same order, at each time."
             ))
         } else if at == 0 && rows[number - 1].numbers[0] >= t {
             Some(format!(
-                "E0525: t = {t} s is not greater than the time of the line before, {} s. List the lines with t \
-                 increasing.",
+                "E0525: t = {t} s is not later than the time of the previous phreatic line, {} s. Sort the lines by \
+                 time.",
                 rows[number - 1].numbers[0]
             ))
         } else {
@@ -145,8 +145,8 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
         places[at].rows.push((t, y));
     }
     if places.is_empty() || places.iter().any(|place| place.rows.len() != places[0].rows.len()) {
-        let message = "E0525: a line has fewer points than the line of the first time. Repeat the same x, in the same \
-                       order, at each time.";
+        let message = "E0525: a phreatic line has fewer points than the line at the first time. Give the same values \
+                       of x, in the same order, at each time.";
         record.error(key, message, report);
         return None;
     }
@@ -166,15 +166,15 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
     if let Some(step) = places.windows(2).find(is_step) {
         let [from, to] = [step[0].x, step[1].x];
         report.warn(format!(
-            "W0522: {key}: the drop from x = {from} to {to} m is narrower than a cell ({cell} m), so the soil \
-             receives too little thrust. Extend the drop over at least one cell."
+            "W0522: {key}: the water table drops between x = {from} and {to} m, in less than a cell ({cell} m), so \
+             the water thrust is too small. Extend the drop over at least one cell."
         ));
     }
     let steepest = places.windows(2).filter(|pair| !is_step(pair)).map(slope).fold(0.0, f64::max);
     if steepest > GENTLE {
         report.warn(format!(
-            "W0523: {key}: its slope is {steepest:.3} (limit {GENTLE}): if water flows along it, pore pressures \
-             are {:.0} % too high. Accept it as conservative, or compute the flow with `drainage = \"coupled\"`.",
+            "W0523: {key}: the line has a slope of {steepest:.3} (limit {GENTLE}): if water flows along it, pore \
+             pressures are {:.0} % too high. Accept this as conservative, or set `drainage = \"coupled\"`.",
             100.0 * steepest * steepest / (1.0 + steepest * steepest)
         ));
     }
@@ -184,13 +184,16 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
-        let message = "E0526: [water] and [shaking] cannot be combined, because pore pressures would not follow \
-                       the shaking. Remove [water], and use undrained strengths.";
+        let message = "E0526: [water] and [shaking] cannot be combined, because the pore pressures of [water] do not \
+                       react to an earthquake. Remove [water], and use undrained strengths.";
         report.error(written.origin, &written.path, message);
     }
     for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
         if matches!(support, Support::Absorbing | Support::FreeField) {
-            let message = format!("E0527: \"{support}\" is not available together with [water]. Use \"roller\".");
+            let message = format!(
+                "E0527: the condition \"{support}\" of this boundary is not available together \
+                                   with [water]. Use \"roller\"."
+            );
             let side = side.word();
             report.error(record.place("boundary"), &format!("boundary.{side}"), message);
         }
@@ -203,8 +206,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let low = case.bodies.iter().map(|body| body.region.corners()[0][up]).fold(f64::INFINITY, f64::min);
     if highest <= low && !written.gives("suction") {
         report.warn(format!(
-            "W0524: water: the water table (up to {highest} m) is below all bodies (from {low} m) and has no \
-             effect. Raise it, or remove [water]."
+            "W0524: water: the water table (at most at {highest} m) is below all bodies (lowest point at {low} m), \
+             so it has no effect. Raise the water table, or remove [water]."
         ));
     }
     if !case.tractions.is_empty() || !case.point_loads.is_empty() {
@@ -214,8 +217,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let wets = |body: &usize| case.materials[case.bodies[*body].material].saturated.is_some();
     if water.table.moves() && case.stages.iter().any(|stage| stage.add.iter().any(wets)) {
         report.warn(
-            "W0525: water: bodies added by a stage have the saturated weight below the water level of time 0, \
-             although the level moves. Give them a material with the weight that suits their stage.",
+            "W0525: water: bodies that a stage adds are saturated up to the water level of t = 0, although the level \
+             moves. Give such bodies a material with the unit weight at their stage.",
         );
     }
 }
@@ -234,7 +237,7 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
         if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number && is_wet(body))
         {
             let message = format!(
-                "E0528: the soil below the water table has no weight, or is lighter than water ({:.2} kN/m3), and \
+                "E0528: this soil below the water table is lighter than water ({:.2} kN/m3) or has no weight, so it \
                  would float. Set `saturated_unit_weight`, for example to \"20 kN/m3\".",
                 water.unit_weight * 1e-3
             );

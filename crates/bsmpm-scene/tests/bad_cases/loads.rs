@@ -224,7 +224,7 @@ pub const INITIAL: &[Row] = &[
     row("k0          = 0.6", "ocr = 0.5", "material.till.ocr", "ocr >= 1"),
     row("k0          = 0.6", "ocr = 2", "material.till.ocr", "E0410"),
     row("k0 = 0.5", "", "initial", "E0413 .. `sand`").up(1),
-    row("k0 = 0.5", "gravity = \"elastic\"", "material.till.k0", "E0405 .. `gravity`").up(37),
+    row("k0 = 0.5", "gravity = \"elastic\"", "material.till.k0", "E0405 .. initial.gravity").up(37),
     row("[initial]\nk0 = 0.5\n", "", "material.till.k0", "E0405 .. no [initial]").up(36),
     row("ramp = \"0 s\"", "ramp = \"0.1 s\"", "gravity.ramp", "E0409"),
     row("-9.81]", "9.81]", "gravity.acceleration", "E0406"),

@@ -28,7 +28,7 @@ pub const RIGID: &[Row] = &[
         "rigid.0.rotation",
         "E0403 .. 1 degrees",
     ),
-    row(FREE, "free = [\"x\", \"z\"]", "rigid.1.free", "E0422 .. Use x, y, rotation"),
+    row(FREE, "free = [\"x\", \"z\"]", "rigid.1.free", "E0422 .. \"x\", \"y\", \"rotation\""),
     row(FREE, "free = [\"x\", \"y\"]", "rigid.1.moment", "E0424 .. the rotation").down(4),
     row(FREE, "free = [\"y\", \"rotation\"]", "rigid.1.start_velocity", "E0424 .. motion along x").down(6),
     row(FREE, "free = [\"x\", \"rotation\"]", "rigid.1.force", "E0424 .. motion along y").down(3),

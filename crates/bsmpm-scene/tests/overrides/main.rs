@@ -420,7 +420,7 @@ fn drains_that_feed_the_ground_are_warned_of() {
     assert!(warned(&full, &[]).is_empty() && warned(&full, &[permeable, quick]).is_empty());
     // Its suction is lost in short steps, too.
     let found = warned(SEEPING, &[permeable, quick, "analysis.end=72000"]);
-    assert!(found.len() == 1 && found[0].contains("7 cells of water into the soil in the run"), "{found:?}");
+    assert!(found.len() == 1 && found[0].contains("7 cells enters the soil during the analysis"), "{found:?}");
     assert!(warned(SEEPING, &[permeable, "water.level=1.0"]).is_empty());
 }
 

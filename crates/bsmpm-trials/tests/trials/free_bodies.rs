@@ -235,7 +235,7 @@ fn the_buoyancy_that_a_rigid_body_lacks_is_warned_of() {
     let case = changed(PISTONS, "poisson = 0.3", wet) + "[water]\nlevel = 1.75\n[gravity]\nacceleration = [0, -9.81]\n";
     let scratch = Scratch::with_case(&changed(&case, "path = [[1.0, 0.6, 0.0]]", "displacement = [0.0, 0.0]"));
     let output = scratch.direct(&["case.toml", "--check"]).expect(0);
-    output.says_once("warning W0429: water: it exerts no pressure on rigid bodies");
+    output.says_once("warning W0429: water: [water] exerts no pressure on rigid bodies");
     output.says_once("(at the start: `left` 2.4525 kN/m, `right` 2.4525 kN/m)");
 }
 

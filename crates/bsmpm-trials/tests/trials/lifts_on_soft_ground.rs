@@ -183,7 +183,7 @@ fn clay_between_sand_and_fill_in_which_no_water_flows_drains_to_both() {
     assert!(warned.iter().all(|warning| !warning.contains("drain") && !warning.contains("stage.0")), "{warned:?}");
     let [a, b, c] = ["[[drain]]", "[[stage]]", "[[history]]"].map(|table| case.find(table).expect("a table"));
     let closed = warnings(&(case[..a].to_owned() + &case[b..c]));
-    assert!(closed.iter().any(|warning| warning.contains("material.sand: drainage = \"hydrostatic\"")), "{closed:?}");
+    assert!(closed.iter().any(|warning| warning.starts_with("W0543: material.sand: ")), "{closed:?}");
     let found = history(&scratch.path("out"));
     let of = |name: &str, t: f64| at(&found, name, t);
     let weight = 20e3 * LIFT;
@@ -270,10 +270,7 @@ fn a_lift_comes_with_the_suction_of_its_time() {
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
     let reported = manifest(&scratch.path("whole")).warnings;
-    assert!(
-        reported.iter().any(|warning| warning.contains("stage.0.add: there is no drain on body.1")),
-        "{reported:?}"
-    );
+    assert!(reported.iter().any(|warning| warning.starts_with("W0544: stage.0.add: the added body.1")), "{reported:?}");
     let found = history(&scratch.path("whole"));
     // Under its own weight what pores hold bears little: p is near that of still water, gamma_w (0.45 - 0.875) m.
     let (suction, still) = (at(&found, "within", 0.255), 9810.0 * (0.45 - 0.875));

@@ -125,12 +125,12 @@ fn contradiction(one: &Crossing<'_>, other: &Crossing<'_>) -> Option<String> {
     let name = &other.called;
     match (one.given, other.given) {
         (Some(a), Some(b)) if a != b => Some(format!(
-            "E0530: the surface overlaps that of `{name}`, which prescribes another pressure at the same time. \
-             Separate the surfaces, or deactivate one of the drains in a stage."
+            "E0530: this drain overlaps drain `{name}`, which prescribes another pressure at the same time. Separate \
+             the two drains, or deactivate one of them in a stage."
         )),
         (None, Some(given)) if *given != Given::Seepage => Some(format!(
-            "E0531: the surface overlaps that of drain `{name}`, where the inflow would leave the soil at once. \
-             Separate the surfaces, or give the drain `seepage = true`."
+            "E0531: this inflow overlaps drain `{name}`, so its water would leave the soil at once. Separate the \
+             inflow and the drain, or give the drain `seepage = true`."
         )),
         _ => None,
     }
@@ -204,7 +204,7 @@ fn lifted(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         if let Some((least, material)) = least.filter(|(least, _)| rate > *least) {
             report.warn(format!(
                 "W0531: inflow.{number}: {rate:e} m/s exceeds the permeability of `{}` ({least:e} m/s), so the \
-                 pressure at the surface may lift the soil. Set `runoff = true` for rain, or reduce the rate.",
+                 surface pressure may lift the soil. For rain set `runoff = true`, otherwise reduce the rate.",
                 case.materials[material].name
             ));
         }

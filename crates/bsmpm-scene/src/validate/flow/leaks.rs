@@ -45,15 +45,17 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         }
     }
     for ((a, b), (ratio, at)) in leaks {
-        let [a, b] = [a, b].map(|material| &case.materials[material].name);
+        let has_flow = |soil: &Soil<3>| soil.permeability.is_some();
+        let (wet, dry) = if flow.soils[a].as_ref().is_some_and(has_flow) { (a, b) } else { (b, a) };
+        let [a, b, wet, dry] = [a, b, wet, dry].map(|material| &case.materials[material].name);
         report.warn(match ratio.is_infinite() {
             true => format!(
-                "W0533: `{a}` and `{b}` meet at {at:.3?} m, and only one has pore-water flow. Its pressure also \
-                 acts within two cells of the other. Give the other at least 20 cells across."
+                "W0533: `{a}` and `{b}` meet at {at:.3?} m: the pressure of `{wet}` also acts on two cells of the \
+                 undrained `{dry}`. Use at least 20 cells across `{dry}`."
             ),
             false => format!(
-                "W0534: `{a}` and `{b}` meet inside cells at {at:.3?} m with a permeability ratio of {ratio:.0}, \
-                 so the tighter soil leaks. Put a grid line at the interface, or use smaller cells."
+                "W0534: `{a}` and `{b}` meet inside cells at {at:.3?} m with a permeability ratio of {ratio:.0}, so \
+                 the tighter soil leaks. Put a grid line at the interface, or use smaller cells."
             ),
         });
     }
@@ -78,8 +80,8 @@ fn at_surfaces(case: &Case, report: &mut Report<'_>) {
         let mut places = around.map(|off| std::array::from_fn(|axis| at[axis] + aside(off, axis)));
         if places.any(is_bare) {
             report.warn(format!(
-                "W0532: history `{}`: {:.3?} m is less than a cell from a surface, where the flux jumps as the \
-                 soil deforms. Move it inside, or record \"water-outflow\" of the drain.",
+                "W0532: history `{}`: the point {:.3?} m is less than a cell from a surface of the soil, where the \
+                 flux is unreliable. Move the point into the soil, or record \"water-outflow\" of the drain.",
                 history.name,
                 &at[..grid.dims()]
             ));
@@ -123,8 +125,8 @@ fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
             None => "gap".into(),
         };
         report.warn(format!(
-            "W0535: the {what} between permeable bodies at {at:.3?} m is {far:.1} cells wide, so water passes as \
-             through soil. Make it at least {REACH} cells wide, or reduce `grid.cell`."
+            "W0535: the {what} between permeable bodies at {at:.3?} m is {far:.1} cells wide (at least {REACH}), so \
+             water flows through it. Use more cells across this place, or a smaller `grid.cell`."
         ));
     }
 }

@@ -31,7 +31,8 @@ const ENOUGH: f64 = 1e-2;
 
 /// What a factor of safety leaves out.
 pub const HELD_WATER: &str = "W0548: pore pressures stay constant during the strength reduction, so the factor of \
-                              safety of soft clay may be too high. Compare it with that of `bsmpm fos --undrained`.";
+                              safety of soft clay may be too high. Compare it with the factor from `bsmpm fos \
+                              --undrained`.";
 
 /// Load over stiffness up to which ground one cell across was shown to be right; under 0.5 runs ended early.
 const SHOWN_NARROW: f64 = 0.2;
@@ -43,14 +44,15 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
         let of_flow = case.output.fields.iter().find(|field| field.is_of_flow());
         if let (Some(field), Some(output)) = (of_flow, root.record("output")) {
             let message = format!(
-                "E0501: no material has pore-water flow, so there is no \"{field}\". Remove it, or set `drainage = \
-                 \"coupled\"` with `porosity` and `permeability`."
+                "E0501: no material has pore-water flow, so the field \"{field}\" does not exist. Remove the field, \
+                 or give a material `drainage = \"coupled\"`, `porosity` and `permeability`."
             );
             output.error("fields", message, report);
         }
         if let Some(analysis) = root.record("analysis").filter(|_| consolidates) {
-            let message = "E0501: no material has pore-water flow, so nothing consolidates. Set `drainage = \
-                           \"coupled\"` with `porosity` and `permeability`, or use \"quasi-static\".";
+            let message = "E0501: no material has pore-water flow, so nothing consolidates. Give a material \
+                           `drainage = \"coupled\"`, `porosity` and `permeability`, or use analysis.type = \
+                           \"quasi-static\".";
             analysis.error("type", message, report);
         }
         return;
@@ -58,8 +60,8 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     let flows = matches!(case.analysis.kind, AnalysisType::Consolidation | AnalysisType::Dynamic);
     if let Some(analysis) = root.record("analysis").filter(|_| !flows) {
         let message = format!(
-            "E0502: \"{}\" has no pore-water flow, but a material is \"coupled\" or \"undrained\". Use \
-             \"consolidation\" or \"dynamic\", or change `drainage`.",
+            "E0502: type = \"{}\" does not compute pore-water flow, but a material has drainage = \"coupled\" or \
+             \"undrained\". Use \"consolidation\" or \"dynamic\", or change `drainage`.",
             case.analysis.kind.word()
         );
         analysis.error("type", message, report);
@@ -86,8 +88,8 @@ fn narrow(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let retention = soil.as_ref().and_then(|soil| soil.retention.as_ref());
         let Some(entry) = retention.map(|of| of.curve.entry()).filter(|entry| NARROW * *entry < cell) else { continue };
         report.warn(format!(
-            "W0540: material.{}.retention: the air-entry suction head of {entry:.2e} m is {:.0} times less than a \
-             cell (limit {NARROW}), so steps may fail. Use a curve with an air entry of 0.1 cells.",
+            "W0540: material.{}.retention: the air-entry suction head, {entry:.2e} m, is 1/{:.0} of a cell (limit \
+             1/{NARROW}), so steps may fail. Use smaller cells, or a curve with air entry at about 0.1 cells.",
             named.name,
             cell / entry
         ));
@@ -106,8 +108,8 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let soft = case.solver.background < 0.5 * ENOUGH && case.analysis.regime == Regime::QuasiStatic;
     if is_loose && soft && load >= LARGE {
         report.warn(format!(
-            "W0541: solver.background: {:e} is too low for a load of {load:.2} times the oedometric stiffness: \
-             settlements may be wrong by 10 %. Set `solver.background = {ENOUGH}`.",
+            "W0541: solver.background: {:e} is too small for a load of {load:.2} times the oedometric stiffness: \
+             settlements may be 10 % wrong. Set `solver.background = {ENOUGH}`.",
             case.solver.background
         ));
     }
@@ -115,8 +117,8 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     if averages && load > SHOWN_NARROW && case.grid.axes.iter().take(case.grid.dims() - 1).any(|axis| axis.cells() == 1)
     {
         report.warn(format!(
-            "W0542: grid: soil one cell wide can move sideways under a load of {load:.2} times its oedometric \
-             stiffness. Use two cells, or `stabilisation.method = \"none\"`."
+            "W0542: grid: soil one cell wide may move sideways under a load of {load:.2} times its oedometric \
+             stiffness. Use two cells across the soil, or `stabilisation.method = \"none\"`."
         ));
     }
 }
@@ -124,16 +126,16 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 /// Splines, points, averages and iterations that carry the pressure.
 fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some(grid) = root.record("grid").filter(|_| case.grid.order == 1) {
-        let message = "E0541: \"linear\" splines give no usable gradient of the pore pressure, which drives the \
-                       flow. Use \"quadratic\".";
+        let message = "E0541: with \"linear\" splines the gradient of the pore pressure, which drives the flow, is \
+                       too inaccurate. Use \"quadratic\".";
         grid.error("degree", message, report);
     }
     let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
         if case.grid.order == 3 && few(body) {
             let message = format!(
-                "E0542: {} material points along each axis of a cell are too few for cubic splines: the pore pressure \
-                 oscillates at surfaces. Use at least {POINTS_OF_CUBIC}.",
+                "E0542: {} material points along each axis of a cell are too few for cubic splines: the pore \
+                 pressure would oscillate. Use at least {POINTS_OF_CUBIC}, or grid.degree = \"quadratic\".",
                 body.points_per_cell
             );
             record.error("points_per_cell", message, report);
@@ -141,15 +143,15 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
     let shown = matches!(case.stabilisation, Stabilisation::None | Stabilisation::ConsistentFBar);
     if let Some(record) = root.record("stabilisation").filter(|_| !shown) {
-        let method = format!("\"{}\"", case.stabilisation.word());
+        let method = format!("method = \"{}\"", case.stabilisation.word());
         record.error("method", not_available(&method, "Use \"consistent-f-bar\"."), report);
     }
     let Some(solver) = root.record("solver") else { return };
     if case.solver.nonlinear == crate::Nonlinear::Broyden {
-        solver.error("nonlinear", not_available("\"broyden\"", "Use \"auto\"."), report);
+        solver.error("nonlinear", not_available("nonlinear = \"broyden\"", "Use \"auto\"."), report);
     }
     if case.solver.quadrature == Quadrature::Fitted {
-        solver.error("quadrature", not_available("\"fitted\"", "Use \"points\"."), report);
+        solver.error("quadrature", not_available("quadrature = \"fitted\"", "Use \"points\"."), report);
     }
 }
 
@@ -161,19 +163,19 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
         let Some(law) = record.word::<LawName>("model") else { continue };
         if flow.soils[number].is_none() && !drains_where_they_meet(case, flow, number) {
             report.warn(format!(
-                "W0543: material.{name}: it is \"hydrostatic\" next to soil with pore-water flow, and no water \
-                 crosses between them. Add a [[drain]] at the interface, or set `drainage = \"coupled\"`."
+                "W0543: material.{name}: this \"hydrostatic\" soil touches soil with pore-water flow, but no water \
+                 passes between the two. Add a [[drain]] at the interface, or set `drainage = \"coupled\"`."
             ));
         }
         let is_excluded = matches!(law, LawName::SensitiveClay | LawName::MuI | LawName::CamClay);
         if is_excluded {
             let instead = "Use another model for this soil, for example \"mohr-coulomb\".";
-            record.error("model", not_available(&format!("\"{law}\""), instead), report);
+            record.error("model", not_available(&format!("the model \"{law}\""), instead), report);
         }
     }
     for (_, record) in root.named("material") {
         if record.word::<bsmpm::material::Separation>("separation") == Some(bsmpm::material::Separation::Closing) {
-            record.error("separation", not_available("\"closing\"", "Remove the key."), report);
+            record.error("separation", not_available("separation = \"gap\"", "Remove `separation`."), report);
         }
     }
 }
@@ -189,31 +191,39 @@ fn not_available(what: &str, instead: &str) -> String {
 fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report<'_>) {
     if record.gives("remove") && case.analysis.regime != Regime::QuasiStatic {
         let message =
-            not_available("removal of bodies in a dynamic analysis", "Remove them in a \"consolidation\" analysis.");
+            not_available("removal of bodies in a dynamic analysis", "Use analysis.type = \"consolidation\".");
         record.error("remove", message, report);
     } else if case.stages.get(number).is_some_and(|stage| !stage.remove.is_empty() && !drains_what_is_bare(case, stage))
     {
         report.warn(format!(
-            "W0544: stage.{number}.remove: the surface exposed by the excavation has no drain, so it is \
-             impermeable. Add a [[drain]] along it, and list its name in `activate` of this stage."
+            "W0544: stage.{number}.remove: the surface exposed by the excavation has no drain, so it is impermeable. \
+             Add a [[drain]] along this surface, and list the drain in `activate` of this stage."
         ));
     }
     case.stages.get(number).into_iter().for_each(|stage| goes(case, (number, stage), report));
     if record.gives("add") && case.analysis.regime != Regime::QuasiStatic {
         let message =
-            not_available("placement of bodies in a dynamic analysis", "Add them in a \"consolidation\" analysis.");
+            not_available("placement of bodies in a dynamic analysis", "Use analysis.type = \"consolidation\".");
         record.error("add", message, report);
     } else if let Some(stage) = case.stages.get(number) {
         placed(case, (number, stage), report);
     }
     let changes = [
-        ("boundary", "a change of the boundary", "Remove it, and give the boundary of all stages in [boundary]."),
+        (
+            "boundary",
+            "a change of the boundary",
+            "Remove `boundary` of this stage, and give one boundary for all stages in [boundary].",
+        ),
         (
             "strength_reduction",
             "a strength reduction in a stage",
-            "Reduce the strength at the end: `bsmpm fos --stage end`.",
+            "Remove it, and find the factor of safety with `bsmpm fos --stage end`.",
         ),
-        ("materials", "a change of material", "Remove it: fast loading of \"coupled\" soil is undrained anyway."),
+        (
+            "materials",
+            "a change of material",
+            "Remove `materials`: fast loading of \"coupled\" soil is undrained anyway.",
+        ),
     ];
     for (key, what, instead) in changes.into_iter().filter(|(key, ..)| record.gives(key)) {
         record.error(key, not_available(what, instead), report);
@@ -231,8 +241,8 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
         };
         if !flow.drains.iter().enumerate().any(drains) {
             report.warn(format!(
-                "W0544: stage.{number}.add: the added body.{body} has no drain, so its surface is impermeable. Add \
-                 a [[drain]] along it, and list its name in `activate` of this stage."
+                "W0544: stage.{number}.add: the added body.{body} has no drain, so its surface is impermeable. Add a \
+                 [[drain]] along this surface, and list the drain in `activate` of this stage."
             ));
         }
     }
@@ -264,8 +274,9 @@ fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) 
         if acts && matches!(of.site, DrainSite::Lines(_) | DrainSite::Plate(_)) && places(of, case).iter().all(is_gone)
         {
             report.warn(format!(
-                "W0546: stage.{number}.remove: drain.{drain} lies on the removed soil and is removed with it. Add \
-                 a [[drain]] along the new surface, and list its name in `activate` of this stage."
+                "W0546: stage.{number}.remove: drain.{drain} lies on the removed soil and ends with it, so the new \
+                 surface is impermeable. Add a [[drain]] along the new surface, and list it in `activate` of this \
+                 stage."
             ));
         }
     }
@@ -299,7 +310,8 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
             match support {
                 Support::Fixed | Support::Roller | Support::Free => {}
                 Support::Contact | Support::Absorbing | Support::FreeField | Support::Outflow => {
-                    let message = not_available(&format!("\"{support}\""), "Use \"roller\" or \"fixed\".");
+                    let message =
+                        not_available(&format!("the boundary condition \"{support}\""), "Use \"roller\" or \"fixed\".");
                     boundary.error(side, message, report);
                 }
             }
@@ -311,7 +323,7 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (_, record) in have_contact.zip(strips).filter(|(has_contact, _)| *has_contact) {
         let message = not_available(
             "frictional contact of a footing",
-            "Use \"rough\" or \"smooth\" (footing), or \"all\" ([[prescribed]]).",
+            "Use interface = \"rough\" or \"smooth\" ([footing]), or components = \"all\" ([[prescribed]]).",
         );
         report.error(record.origin, &record.path, message);
     }
@@ -323,13 +335,14 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
     if case.settles || case.initial == Some(Initial::Elastic) {
         for load in case.sudden_loads() {
             report.warn(format!(
-                "W0547: {load}: it acts in full from time 0 and is part of the initial stress, so no soil \
-                 consolidates under it. Apply it with `ramp`."
+                "W0547: {load}: this load acts in full from t = 0 and is part of the initial stress, so the soil \
+                 does not consolidate under it. Give the load a `ramp`."
             ));
         }
     }
     if let Some(shaking) = root.record("shaking") {
-        let message = not_available("[shaking]", "Remove it, or use \"hydrostatic\" soil with undrained strengths.");
+        let message =
+            not_available("[shaking]", "Remove it, or use drainage = \"hydrostatic\" with undrained strengths.");
         report.error(shaking.origin, &shaking.path, message);
     }
 }
@@ -341,8 +354,9 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
     if reduction.gives("stage") && flow.at_rest == Motion::Held && !unloaded {
         report.warn(HELD_WATER);
     } else if !reduction.gives("stage") {
-        let message = "E0543: with pore-water flow the strength cannot be reduced from the start. Set `stage = \
-                       \"end\"`, which keeps the pore pressures of that time (`bsmpm fos --stage end`).";
+        let message = "E0543: with pore-water flow the strength cannot be reduced from the start of the analysis. \
+                       Set `stage = \"end\"`: the pore pressures of that time then stay constant (`bsmpm fos --stage \
+                       end`).";
         report.error(reduction.origin, &reduction.path, message);
     }
 }
@@ -351,15 +365,15 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
 fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some((growth, _)) = case.analysis.growth.filter(|(growth, _)| *growth > MOST_GROWTH) {
         report.warn(format!(
-            "W0549: analysis.growth: {growth} exceeds {MOST_GROWTH}, so steps become inaccurate and consolidation \
-             overshoots. Set `growth` to {MOST_GROWTH} or less."
+            "W0549: analysis.growth: steps that grow by a factor of {growth} (limit {MOST_GROWTH}) become \
+             inaccurate, and consolidation overshoots. Set `growth` to {MOST_GROWTH} or less."
         ));
     }
     let alike = case.analysis.growth.is_none() && root.record("analysis").is_some_and(|record| record.gives("dt_max"));
     if alike {
         report.warn(
-            "W0550: analysis.dt_max: it has no effect without `growth`, because all steps are equal. Add `growth`, \
-             or remove `dt_max`.",
+            "W0550: analysis.dt_max: `dt_max` has no effect without `growth`, because all steps are equal. Add \
+             `growth`, or remove `dt_max`.",
         );
     }
 }
@@ -368,8 +382,8 @@ fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
 fn weighed(case: &Case, report: &mut Report<'_>) {
     if case.gravity.is_some() && case.water.is_none() {
         report.warn(
-            "W0551: water: there is gravity but no water table, so the pore pressure is zero at the start and only \
-             develops with time. Give `water.level`.",
+            "W0551: water: the case has gravity but no water table, so the pore pressure is zero at the start and \
+             only builds up in time. Give `water.level`.",
         );
     }
 }
@@ -390,13 +404,13 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let end = case.analysis.end;
     let dt = case.analysis.growth.map_or(case.analysis.dt, |(_, longest)| longest.min(end));
     // What has suction loses it in however many steps.
-    let (time, period) = if flow.retains() { (end, "the run") } else { (dt, "a step") };
+    let (time, period) = if flow.retains() { (end, "during the analysis") } else { (dt, "in one step") };
     let height = most * time / cell;
     for (number, drain) in flow.drains.iter().enumerate().filter(|(_, drain)| drain.given == Given::StillWater) {
         if height > FILM && places(drain, case).iter().any(dry) {
             report.warn(format!(
-                "W0552: drain.{number}: above the water table it acts like a pond and feeds up to {height:.1} \
-                 cells of water into the soil in {period}. Set `seepage = true`, or give the pond's `head`."
+                "W0552: drain.{number}: above the water table this drain acts like a pond: a water layer of up to \
+                 {height:.1} cells enters the soil {period}. Set `seepage = true`, or give the `head` of the pond."
             ));
         }
     }
@@ -421,8 +435,8 @@ fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let most = above.fold(0.0, f64::max);
         if most > cell {
             report.warn(format!(
-                "W0553: material.{}: its upper {most:.2} m are above the water table but stay saturated; suction \
-                 up to {:.0} kPa increases the strength. Add `retention`, or use \"hydrostatic\" for dry soil.",
+                "W0553: material.{}: the soil up to {most:.2} m above the water table stays saturated, so suction \
+                 (to {:.0} kPa) strengthens it. Add `retention`, or use drainage = \"hydrostatic\" for dry soil.",
                 named.name,
                 1e-3 * most * water.unit_weight
             ));
@@ -451,8 +465,8 @@ fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let most = places(drain, case).iter().map(above).fold(0.0, f64::max);
         if most > 0.5 * cell {
             report.warn(format!(
-                "W0554: drain.{number}: the head is up to {most:.3} m above the surface, but no water weighs on \
-                 the surface. For free water give `water.level` instead of `head`."
+                "W0554: drain.{number}: the head is up to {most:.3} m above the surface of the soil, but no water \
+                 presses on the surface. For a pond or reservoir give `water.level` instead of `head`."
             ));
         }
     }

@@ -20,8 +20,8 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
         let settings: Vec<String> = unverified_settings(case).into_iter().chain(unlike_a_band(case)).collect();
         if !settings.is_empty() {
             report.warn(format!(
-                "W0304: {}: scaling by the band width is not verified {}: the softening may be too fast or too slow. \
-                 Compare two cell sizes.",
+                "W0304: {}: the scaling of softening by `band_width` is not verified {}, so the soil may soften too \
+                 fast or too slowly. Compare the results of two cell sizes.",
                 record.path_of("band_width"),
                 settings.join(" and ")
             ));

@@ -75,13 +75,18 @@ pub(super) fn law(
     let all = all_keys();
     let unused = all.iter().filter(|key| !required.contains(key) && !known.contains(key));
     for key in unused.filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
-        let message =
-            format!("E0304: the model \"{model}\" has no such parameter. Remove `{key}`, or choose another model.");
+        let message = format!(
+            "E0304: the model \"{model}\" has no parameter `{key}`. Remove the key, or choose another \
+                     `model`."
+        );
         record.error(key, message, report);
         whole = false;
     }
     for key in required.iter().filter(|key| !record.gives(key)) {
-        let message = format!("E0305: the model \"{model}\" needs this parameter. Add `{key}`.");
+        let message = format!(
+            "E0305: the model \"{model}\" needs the parameter `{key}`, which is missing. Add \
+                               `{key}`."
+        );
         report.error(record.origin, &record.path_of(key), message);
         whole = false;
     }
@@ -112,8 +117,8 @@ pub(super) fn law(
     let [slow, fast] = ["mu_s", "mu_2"].map(|key| parameters.of(key).value);
     if model == LawName::MuI && slow > fast {
         let message = format!(
-            "E0306: the friction coefficient at large rates ({fast}) is below that at rest, mu_s = {slow}. Set `mu_2` \
-             to at least `mu_s`."
+            "E0306: the friction coefficient at large shear rates, mu_2 = {fast}, is smaller than the static one, \
+             mu_s = {slow}. Set `mu_2` to at least `mu_s`."
         );
         record.error("mu_2", message, report);
         return None;
@@ -145,8 +150,8 @@ fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, re
         let limit = 1.5 * 0.5 * young.at(y) / (1.0 + poisson);
         if rate > limit {
             report.warn(format!(
-                "W0305: {}: the cohesion falls by {rate:.3e} Pa per unit of plastic strain (limit {limit:.3e} Pa), so \
-                 it drops at once. Use smaller cells, or a larger `softening_strain`.",
+                "W0305: {}: the cohesion falls by {rate:.3e} Pa per unit of plastic strain (limit {limit:.3e} Pa), \
+                 so it is lost all at once. Use smaller cells, or a larger `softening_strain`.",
                 record.path
             ));
             return;
@@ -179,16 +184,17 @@ fn star(record: &Record, values: &mut Vec<(&'static str, Profile)>, report: &mut
     const SLOPES: [[&str; 2]; 2] = [["kappa_star", "kappa"], ["lambda_star", "lambda"]];
     let of_volume = SLOPES.into_iter().find(|[_, slope]| record.gives(slope));
     if let Some([_, slope]) = of_volume.filter(|_| !record.gives("void_ratio")) {
-        let message = "E0314: the slope of v over ln p' needs the initial void ratio. Add `void_ratio`, or use \
-                       `kappa_star` = kappa/(1 + e0) and `lambda_star` = lambda/(1 + e0).";
+        let message = "E0314: `kappa` and `lambda`, slopes of the specific volume over ln p', need the initial void \
+                       ratio e0. Add `void_ratio`, or give `kappa_star` = kappa/(1 + e0) and `lambda_star` = \
+                       lambda/(1 + e0).";
         record.error(slope, message, report);
         return None;
     }
     for [starred, slope] in SLOPES {
         if !record.gives(starred) && !record.gives(slope) {
             let message = format!(
-                "E0305: the model \"modified-cam-clay\" needs this slope. Add `{starred}`, or `{slope}` and \
-                 `void_ratio`."
+                "E0305: the model \"modified-cam-clay\" needs the slope `{starred}`, which is missing. Add \
+                 `{starred}`, or `{slope}` and `void_ratio`."
             );
             report.error(record.origin, &record.path_of(starred), message);
             return None;
@@ -208,8 +214,8 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     let [kappa, lambda] = ["kappa_star", "lambda_star"].map(|key| law.of(key).value);
     if lambda <= kappa {
         let message = format!(
-            "E0307: the slope of the normal compression line ({lambda}) does not exceed that of unloading, kappa_star \
-             = {kappa}. Correct `lambda_star` or `kappa_star`."
+            "E0307: the slope of the normal compression line (lambda_star = {lambda}) must exceed the slope of \
+             unloading (kappa_star = {kappa}). Correct `lambda_star` or `kappa_star`."
         );
         record.error("lambda_star", message, report);
         return None;
@@ -233,8 +239,8 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     );
     if record.number("ocr").is_some_and(|ocr| ocr > 2.0) {
         report.warn(format!(
-            "W0306: {}: the clay softens and dilates in shear, because ocr exceeds 2. Results depend on the cell \
-             size. Compare two sizes of `grid.cell`.",
+            "W0306: {}: with ocr above 2 this clay softens and dilates in shear, so results depend on the cell size. \
+             Compare the results of two values of `grid.cell`.",
             record.path
         ));
     }
@@ -258,8 +264,8 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
             return Some(());
         }
         report.warn(format!(
-            "W0307: {}: the material softens, and shear bands become two cells wide, so results depend on the cell \
-             size. Add `band_width`, or compare two cell sizes.",
+            "W0307: {}: this material softens, and shear bands are always two cells wide, so results depend on the \
+             cell size. Add `band_width`, or compare the results of two cell sizes.",
             record.path
         ));
         return Some(());
@@ -271,8 +277,8 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
     );
     if longest > SQUARE * shortest {
         let message = format!(
-            "E0316: a shear band width needs cells of one size, and these are {shortest} to {longest} m long. Give \
-             `grid.cell` one number."
+            "E0316: `band_width` needs cells of equal size, but the cells of the grid are {shortest} to {longest} m \
+             long. Give `grid.cell` one number."
         );
         record.error("band_width", message, report);
         return None;
@@ -334,8 +340,8 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     if dilation.1 > friction.0 {
         let path = record.path_of("dilation_angle");
         report.warn(format!(
-            "W0308: {path}: the dilation angle ({} deg) exceeds the friction angle at some heights and is reduced to \
-             it there. Vary both with height.",
+            "W0308: {path}: where the dilation angle ({} deg) exceeds the friction angle, the program reduces it to \
+             the friction angle. Let `dilation_angle` vary with height as `friction_angle` does.",
             dilation.1
         ));
     }
@@ -352,8 +358,8 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi
     // until it has closed, and without friction there is no apex.
     if record.word("separation") == Some(Separation::Closing) && (friction.0 <= 0.0 || cohesion.1 > 0.0) {
-        let message = "E0317: \"gap\" needs a friction angle above 0 and no cohesion, because a gap opens at zero \
-                       stress only. Set cohesion = 0, or remove `separation`.";
+        let message = "E0317: separation = \"gap\" needs a friction angle above 0 and zero cohesion, because a gap \
+                       opens only at zero stress. Correct `friction_angle` and `cohesion`, or remove `separation`.";
         record.error("separation", message, report);
     }
     Some(())
@@ -369,8 +375,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
         if !record.gives("fit") {
             report.warn(format!(
-                "W0310: {}: the default cone is for plane strain and has only {:.1} % of the Mohr-Coulomb strength in \
-                 compression, {:.1} % in extension. Use fit = \"outer\" or \"inner\".",
+                "W0310: {}: the default cone (for plane strain) has {:.1} % of the Mohr-Coulomb strength in \
+                 compression, {:.1} % in extension. Use fit = \"outer\" for compression, or \"inner\" for extension.",
                 record.path_of("fit"),
                 100.0 * cone.strength_over(Match::Outer),
                 100.0 * cone.strength_over(Match::Inner)
@@ -381,8 +387,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
     let ratio = cone.strength_in_plane_strain();
     if (ratio - 1.0).abs() > 0.005 {
         report.warn(format!(
-            "W0311: {}: in plane strain this Drucker-Prager cone has {:.1} % of the Mohr-Coulomb strength. If this is \
-             not intended, use model = \"mohr-coulomb\".",
+            "W0311: {}: in plane strain this Drucker-Prager cone has {:.1} % of the Mohr-Coulomb strength. For the \
+             Mohr-Coulomb strength use model = \"mohr-coulomb\".",
             record.path,
             100.0 * ratio
         ));

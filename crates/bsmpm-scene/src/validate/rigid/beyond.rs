@@ -14,20 +14,21 @@ pub(super) fn check(case: &Case, rigid: &Rigid, record: &Record, report: &mut Re
     let key = record.path_of(shape::key(record));
     if stays_outside(case, rigid) {
         report.warn(format!(
-            "W0417: {key}: the body lies outside the grid and never enters it. It has no effect. Move it, or enlarge the grid."
+            "W0417: {key}: the rigid body lies outside the grid and never enters it, so it has no effect. Move the \
+             rigid body, or enlarge the grid."
         ));
     } else if let Some((face, distance)) = touched(case, rigid) {
         report.warn(format!(
-            "W0418: {key}: the body starts {distance:.3} m from boundary `{}` and is driven towards it. Boundaries do not stop \
-             rigid bodies, so it leaves the grid. Enlarge the grid there.",
+            "W0418: {key}: the rigid body, {distance:.3} m from boundary `{}`, moves out of the grid, because \
+             boundaries stop only soil. Enlarge the grid on this side.",
             face.side(case.geometry)
         ));
     } else if rigid.free.contains(&true)
         && let Some(face) = cut(case, rigid)
     {
         report.warn(format!(
-            "W0419: {key}: the symmetry plane `{}` cuts this free body, but its whole mass and force act on the modelled half. \
-             Give half of both, and free = [\"{}\"] only.",
+            "W0419: {key}: the symmetry plane `{}` cuts this free body, so its whole mass and force load the \
+             modelled half of the soil. Give half the mass and force, and set free = [\"{}\"].",
             face.side(case.geometry),
             ["y", "x"][face.axis]
         ));

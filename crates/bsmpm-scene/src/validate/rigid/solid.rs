@@ -38,13 +38,14 @@ pub(super) fn read(
     report: &mut Report<'_>,
 ) -> Option<Rigid> {
     if let Some(key) = FLAT_SHAPES.iter().find(|key| record.gives(key)) {
-        let message = "E0432: this shape is not available in 3-D. Use `box`, `sphere`, `revolve` or `terrain`.";
+        let message = "E0432: this shape is not available for rigid bodies in 3-D. Use `box`, `sphere`, `revolve` or \
+                       `terrain`.";
         record.error(key, message, report);
         return None;
     }
     if let Some(key) = IN_A_PLANE.iter().find(|key| record.gives(key)) {
-        let message = "E0433: this key is not available in 3-D, where a rigid body only translates as prescribed. Use \
-                       `displacement`, `velocity` or `path`.";
+        let message = "E0433: this key is not available in 3-D, where rigid bodies can only translate along a \
+                       prescribed path. Use `displacement`, `velocity` or `path`.";
         record.error(key, message, report);
         return None;
     }
@@ -98,7 +99,8 @@ fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
     };
     if let Some(corner) = corners.iter().find(|corner| corner[0] < 0.0) {
         let message = format!(
-            "E0434: a corner has the radius {} m. Radii are measured from the axis, and cannot be negative. Move the polygon.",
+            "E0434: a corner of the polygon has the radius {} m, but a distance from the axis cannot be negative. \
+             Move the polygon to radii of 0 or more.",
             corner[0]
         );
         shape.error("polygon", message, report);
@@ -158,8 +160,8 @@ pub(super) fn check(
     };
     if (0..2).any(outside) {
         report.warn(format!(
-            "W0420: {}: the raster of heights ends inside the grid. The surface continues horizontally from there. Extend the \
-             raster to the edges of the grid.",
+            "W0420: {}: the terrain heights end inside the grid, and the terrain continues horizontally from there. \
+             Give heights up to the edges of the grid.",
             record.path_of(key)
         ));
     }
