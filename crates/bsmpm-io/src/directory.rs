@@ -73,14 +73,13 @@ impl OutputDirectory {
         match (held.first(), existing) {
             (None, _) => {}
             (Some(found), Existing::Refuse) => {
-                let advice =
-                    "Continue it with `--restart auto`, replace it with `--force`, or choose another one with `-o`";
+                let advice = "Continue that run with `--restart auto`, replace it with `--force`, or choose another directory with `-o`";
                 return Err(occupied(path, found, advice));
             }
             (Some(_), Existing::Delete) => delete_run(path, &held)?,
         }
         let refused = |error| match error {
-            Error::File { source, .. } => Error::Directory { action: "claim", path: path.clone(), source },
+            Error::File { source, .. } => Error::Directory { action: "write to", path: path.clone(), source },
             other => other,
         };
         first.write(path).map_err(refused)?;
@@ -172,7 +171,7 @@ fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
         return Err(occupied(
             directory,
             &held[0],
-            "There is no run.json that lists it. Delete it, or choose another directory with `-o`",
+            "No run.json lists this file. Delete the file, or choose another directory with `-o`",
         ));
     }
     let manifest = Manifest::read(directory)?;
@@ -211,25 +210,25 @@ fn delete(doomed: &[PathBuf]) -> Result<(), Error> {
 /// Whether an output that a `run.json` names is there to be deleted, or why it must not be.
 fn inspect(directory: &Path, name: &str) -> Result<bool, &'static str> {
     if !is_plain_relative(name) {
-        return Err("is no relative path that stays in the directory");
+        return Err("is not a path within this directory");
     }
     if !has_our_ending(name) {
-        return Err("is no file of a run");
+        return Err("is not a file of a run");
     }
     let mut path = directory.to_owned();
     let mut last: Option<Metadata> = None;
     for part in Path::new(name).components() {
         path.push(part);
         match fs::symlink_metadata(&path) {
-            Ok(found) if found.is_symlink() => return Err("leads over a symbolic link"),
+            Ok(found) if found.is_symlink() => return Err("is reached through a symbolic link"),
             Ok(found) => last = Some(found),
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
-            Err(_) => return Err("cannot be looked at"),
+            Err(_) => return Err("cannot be examined"),
         }
     }
     match last {
         Some(found) if found.is_file() => Ok(true),
-        _ => Err("is no file"),
+        _ => Err("is not a file"),
     }
 }
 

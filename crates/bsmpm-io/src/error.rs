@@ -58,7 +58,8 @@ pub enum Error {
     },
     /// A name of a field or column that the file format cannot hold, or that stands there twice.
     #[error(
-        "E0763: `{}` was not written: the name \"{name}\" {reason}. The format does not allow it. Rename it.",
+        "E0763: `{}` was not written: the name \"{name}\" {reason}. The file format does not allow this name. Rename \
+         the history, profile or material.",
         path.display()
     )]
     Name {
@@ -71,7 +72,8 @@ pub enum Error {
     },
     /// The operating system refused to read or write a file.
     #[error(
-        "E0764: `{}`: the system cannot {action} it ({source}). The program stops. Check the path, its permissions and the disk.",
+        "E0764: the system cannot {action} `{}` ({source}). The program stops. Check the path, its permissions and \
+         the disk.",
         path.display()
     )]
     File {
@@ -84,7 +86,8 @@ pub enum Error {
     },
     /// A file is damaged, or none that this program wrote.
     #[error(
-        "E0765: `{}` is damaged, or not a file of this program: {reason}. It is not read. Run the case again.",
+        "E0765: `{}` is damaged, or was not written by this program: {reason}. The file is not read. Run the case \
+         again.",
         path.display()
     )]
     Format {
@@ -95,8 +98,8 @@ pub enum Error {
     },
     /// A checkpoint is damaged, or none that this program can go on from.
     #[error(
-        "E0720: checkpoint `{}` cannot be used: {reason}. The run was not continued. Name another one with `--restart FILE`, or start \
-         again with `--force`.",
+        "E0720: checkpoint `{}` cannot be used: {reason}. The run was not continued. Name another checkpoint with \
+         `--restart FILE`, or start again with `--force`.",
         path.display()
     )]
     Checkpoint {
@@ -107,8 +110,8 @@ pub enum Error {
     },
     /// There is no room for a file; nothing was written.
     #[error(
-        "E0766: no space for `{}`: it needs {needed} bytes, {available}. It was not written. Free space on the disk, and continue with \
-         `--restart auto`.",
+        "E0766: `{}` was not written: the file needs {needed} bytes, but {available}. Free space on the disk, and \
+         continue with `--restart auto`.",
         path.display()
     )]
     Space {
@@ -121,7 +124,8 @@ pub enum Error {
     },
     /// The output directory cannot be made, opened or written to.
     #[error(
-        "E0767: output directory `{}`: the system cannot {action} it ({source}). Nothing was run. Choose another one with `-o`.",
+        "E0767: the system cannot {action} the output directory `{}` ({source}). Nothing was run. Choose another \
+         directory with `-o`.",
         path.display()
     )]
     Directory {

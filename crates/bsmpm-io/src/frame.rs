@@ -132,9 +132,9 @@ impl Frame {
         let name = &self.fields[index].name;
         let plain = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
         let reason = if name.is_empty() || !name.chars().all(plain) {
-            "may hold only letters, digits, _, - and ."
+            "has characters other than letters, digits, `_`, `-` and `.`"
         } else if self.fields[..index].iter().any(|other| other.name == *name) {
-            "is given to two fields"
+            "is used for two fields"
         } else {
             return Ok(());
         };

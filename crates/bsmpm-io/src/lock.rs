@@ -133,8 +133,8 @@ fn take_over(directory: &Path, (own, found): (&Holder, &FoundLock), unseen: Unse
         looks -= 1;
         match (looks, unseen) {
             (0, Unseen::Respect) => {
-                let advice = "Wait for it, or use `--break-lock` if it has ended";
-                return Err(locked(directory, "a run that was taking over the lock of another", advice));
+                let advice = "Wait until that run ends. If it has ended already, use `--break-lock`";
+                return Err(locked(directory, "another run that is about to take it over", advice));
             }
             (0, Unseen::Break) => {
                 looks = LOOKS.0;
@@ -178,22 +178,26 @@ impl FoundLock {
 
     /// What is to be reported when `own` takes this lock over; an error if its holder lives or may live.
     fn yields(&self, directory: &Path, own: &Holder, unseen: Unseen) -> Result<String, Error> {
-        let unknown = "a run that it does not name".to_owned();
+        let unknown = "an unknown run".to_owned();
         let name = self.holder.as_ref().map_or(unknown, Holder::to_string);
         let why = match self.holder.as_ref().map_or(Fate::Unseen, |holder| holder.fate(own, self.owner)) {
             Fate::Alive => {
-                return Err(locked(directory, &name, "Wait for it to end, or choose another directory with `-o`"));
+                return Err(locked(
+                    directory,
+                    &name,
+                    "Wait until that run ends, or choose another directory with `-o`",
+                ));
             }
             Fate::Gone(why) => why,
             Fate::Unseen if unseen == Unseen::Break => "by --break-lock",
             Fate::Unseen => {
-                let advice = "Wait for it, or use `--break-lock` if it has ended";
+                let advice = "Wait until that run ends. If it has ended already, use `--break-lock`";
                 return Err(locked(directory, &name, advice));
             }
         };
         Ok(format!(
-            "W0737: the lock of the output directory was taken over from {name} ({why}). Two runs would destroy its files. Make sure that \
-             the other run has ended."
+            "W0737: the output directory was locked by {name}, and this run took over the lock ({why}). Two runs at \
+             once would destroy the files. Make sure that the other run has ended."
         ))
     }
 }

@@ -172,9 +172,9 @@ fn check_headings(path: &Path, columns: &[TableColumn]) -> Result<(), Error> {
     let bad = |text: &str| text.trim() != text || text.is_empty() || text.contains([',', '"', '#', '\n', '\r']);
     for (index, TableColumn { name, unit }) in columns.iter().enumerate() {
         let reason = if bad(name) || bad(unit) {
-            "or its unit is empty or holds a comma, quote, # or space at an end"
+            "(or its unit) is empty, or contains a comma, a quote, a # or a space at an end"
         } else if columns[..index].iter().any(|other| other.name == *name) {
-            "is given to two columns"
+            "is used for two columns"
         } else {
             continue;
         };

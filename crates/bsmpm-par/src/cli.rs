@@ -202,10 +202,16 @@ fn petsc_options(options: &[String]) -> Result<(), String> {
             ));
         }
         if !is_name && PETSC_REFUSED.contains(&option.as_str()) {
-            return Err(format!("E0705: the PETSc option {option} would load code. Nothing was run. Remove it."));
+            return Err(format!(
+                "E0705: the value {option} of a PETSc option would load other code or write files. \
+                Nothing was run. Remove this PETSc option."
+            ));
         }
         if !is_name && option.contains([':', '/']) {
-            return Err(format!("E0706: the PETSc option {option} names a file. Nothing was run. Remove it."));
+            return Err(format!(
+                "E0706: the value {option} of a PETSc option names a file, which is not allowed. \
+                Nothing was run. Remove this value."
+            ));
         }
     }
     // The value would be a viewer, and some of those write files of their own choice of name: binary, hdf5, vtk, ...
@@ -213,7 +219,10 @@ fn petsc_options(options: &[String]) -> Result<(), String> {
     let viewer = options.windows(2).find(|pair| views(&pair[0]) && !pair[1].starts_with('-'));
     viewer.map_or(Ok(()), |pair| {
         let (name, value) = (&pair[0], &pair[1]);
-        Err(format!("E0707: the PETSc option {name} has the value {value}. Nothing was run. Remove the value."))
+        Err(format!(
+            "E0707: the PETSc option {name} has the value {value}, which PETSc would take as a file or \
+            format. Nothing was run. Remove the value."
+        ))
     })
 }
 

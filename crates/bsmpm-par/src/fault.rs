@@ -25,7 +25,8 @@ impl Fault {
         let Some(text) = std::env::var_os("BSMPM_FAULT") else { return Ok(None) };
         match Self::parse(&text.to_string_lossy())? {
             Self { place: FaultPlace::Rank(rank), .. } if rank >= ranks => Err(format!(
-                "E0708: BSMPM_FAULT names a rank beyond the {ranks} rank(s) of this run. Nothing was run. Name another rank."
+                "E0708: the environment variable BSMPM_FAULT names a rank that this run of {ranks} rank(s) does not \
+                 have. Nothing was run. Name a rank below {ranks}."
             )),
             fault => Ok(Some(fault)),
         }
@@ -44,8 +45,12 @@ impl Fault {
             Some(Self { place, step: step.strip_prefix("step=")?.parse().ok()? })
         };
         let forms = "panic:rank=R,step=N, kill:phase=P,step=N or reject:step=N";
-        read()
-            .ok_or_else(|| format!("E0709: BSMPM_FAULT = \"{text}\" is not understood. Nothing was run. Use {forms}."))
+        read().ok_or_else(|| {
+            format!(
+                "E0709: the environment variable BSMPM_FAULT has an unknown value, \"{text}\". \
+                Nothing was run. Use one of: {forms}."
+            )
+        })
     }
 
     /// Whether this step is to be rejected when it has converged.

@@ -77,19 +77,19 @@ fn not_reached(load: &ManifestLimitLoad) -> String {
     let percent = 100.0 * change;
     if *value <= 0.0 {
         return format!(
-            "W0726: `{name}` meets no resistance ({value:.4e} {unit} at the end). There is no limit load. Check that it touches the soil \
-             and moves towards it."
+            "W0726: the soil does not resist `{name}` (load at the end: {value:.4e} {unit}), so there is no limit \
+             load. Check that `{name}` touches the soil and moves towards it."
         );
     }
     let last = format!("{value:.4e} {unit}");
     match *change > 0.0 {
         true => format!(
-            "W0727: the load of `{name}` still grew by {percent:.1} % over the last quarter of its path, to {last}. There is no limit \
-             load yet. Increase the prescribed displacement."
+            "W0727: the load on `{name}` still grew by {percent:.1} % over the last quarter of its path, to {last}. \
+             The limit load is not reached. Increase the prescribed displacement."
         ),
         false => format!(
-            "W0728: the load of `{name}` fell by {:.1} % over the last quarter of its path, to {last}. There is no limit load. Increase \
-             `analysis.steps`.",
+            "W0728: the load on `{name}` fell by {:.1} % over the last quarter of its path, to {last}. The last load \
+             is not the limit load. Increase `analysis.steps`.",
             -percent
         ),
     }

@@ -83,20 +83,25 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
         };
         if let (None, Some(shortage)) = (shortage(estimate.bytes), shortage(estimate.bytes_with_newton)) {
             let text = format!(
-                "W0723: a step with Newton's method needs {shortage}. The run may be killed then. Use larger cells, or \
-                 more hosts."
+                "W0723: Newton's method, which difficult steps use, needs too much memory: {shortage}. The system may \
+                 then end the run. Use larger cells, or more hosts."
             );
             say(&headed(&text, "warning"));
         }
         match shortage(estimate.bytes) {
             Some(shortage) if arguments.check && shortage.by != Limit::Asked => {
                 let text = format!(
-                    "W0724: the case needs {shortage}. It cannot be run here. Use larger cells, fewer points, or more hosts."
+                    "W0724: the case needs too much memory: {shortage}. The case cannot be run on this host. Use \
+                     larger cells, fewer points, or more hosts."
                 );
                 say(&headed(&text, "warning"));
             }
             Some(shortage) => {
-                complain(&shortage.refusal());
+                let text = format!(
+                    "E0702: the case needs too much memory: {shortage}. Nothing was run. Use larger cells, fewer \
+                     points or more hosts, or set `--max-memory`."
+                );
+                complain(&text);
                 code = exit::MEMORY;
             }
             None => {}

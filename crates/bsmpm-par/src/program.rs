@@ -75,7 +75,10 @@ fn choose_lanes() -> Result<(), String> {
     let Some(name) = std::env::var_os("BSMPM_LANES") else { return Ok(()) };
     let name = name.to_string_lossy();
     lanes::choose(&name).map_err(|error| {
-        format!("E0710: BSMPM_LANES = \"{name}\" cannot be used: {error}. Nothing was run. Unset BSMPM_LANES.")
+        format!(
+            "E0710: the environment variable BSMPM_LANES = \"{name}\" cannot be used: {error}. Nothing was run. \
+            Unset BSMPM_LANES."
+        )
     })
 }
 
@@ -118,7 +121,10 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
     });
     let petsc = agreed(universe, exit::BUG, petsc)?;
     let probed = linear::probe(&petsc, &choice).map_err(|error| {
-        format!("E0713: the linear solver cannot be used: {error}. Nothing was run. Choose another `solver.linear`.")
+        format!(
+            "E0713: the linear solver cannot be used: {error}. Nothing was run. Choose another `solver.linear`, \
+            for example \"direct\"."
+        )
     });
     agreed(universe, exit::CASE, probed)?;
     let set = reports.iter().try_for_each(|(name, value)| petsc.set_option(name, *value));
@@ -126,7 +132,7 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
         universe,
         exit::BUG,
         set.map_err(|error| {
-            format!("E0714: PETSc refuses an option: {error}. Nothing was run. Correct the options after `--`.")
+            format!("E0714: PETSc does not accept an option: {error}. Nothing was run. Correct the options after `--`.")
         }),
     )?;
     agreed(universe, exit::BUG, start_threads(arguments.threads))?;
@@ -134,8 +140,12 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
         format!("E0715: HDF5 could not be started: {error}. Nothing was run. Check the installation of HDF5.")
     });
     let hdf5 = agreed(universe, exit::BUG, hdf5)?;
-    let requests = Requests::of_signals()
-        .map_err(|error| format!("E0716: signals cannot be handled: {error}. Nothing was run. Report this."));
+    let requests = Requests::of_signals().map_err(|error| {
+        format!(
+            "E0716: the program cannot set up its reaction to Ctrl-C and kill (system signals): \
+            {error}. Nothing was run. Report this message."
+        )
+    });
     let requests = Rc::new(agreed(universe, exit::BUG, requests)?);
     begin::run((universe, &hdf5), (&petsc, choice), task, cut, requests)
 }

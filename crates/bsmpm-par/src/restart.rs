@@ -138,8 +138,8 @@ fn resume<'h>(
         && past.stages.iter().any(|stage| stage.strength_reduction.is_some()) | case.stages.iter().any(divided)
     {
         let reason = format!(
-            "E0722: checkpoint `{}` is from a run that has reduced its strength, and {change}. It cannot be continued. Start the run \
-             again with `--force`.",
+            "E0722: the strength was already reduced before checkpoint `{}`, and the reduction has changed since: \
+             {change}. The run cannot be continued. Start again with `--force`.",
             found.path.display()
         );
         return Err(Refusal::new(exit::CHECKPOINT, reason));
@@ -148,8 +148,8 @@ fn resume<'h>(
     let (t, end) = (state.progress.t, case.analysis.end);
     if t > end {
         let reason = format!(
-            "E0723: checkpoint `{}` is at t = {t}, after the end of the case (t = {end}). It cannot be continued. Increase \
-             `analysis.end`.",
+            "E0723: checkpoint `{}` is at t = {t}, after the end of the case (t = {end}). The run cannot be \
+             continued. Increase `analysis.end`.",
             found.path.display()
         );
         return Err(Refusal::new(exit::CHECKPOINT, reason));

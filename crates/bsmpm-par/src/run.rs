@@ -178,8 +178,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
     fn make_again(&mut self, step: u64) {
         self.fault = None;
         self.warn(format!(
-            "W0725: step {step} was rejected after it converged, as BSMPM_FAULT requests. It is repeated. Unset BSMPM_FAULT outside of \
-             tests."
+            "W0725: step {step} is repeated although it converged, because the environment variable BSMPM_FAULT \
+             requests this. Results do not change. Unset BSMPM_FAULT outside of tests."
         ));
     }
 

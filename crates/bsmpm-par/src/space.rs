@@ -39,13 +39,16 @@ pub fn admit<K: Kinematics<D>, const D: usize>(
     let shortage = held.and_then(|held| need.shortage(held, arguments.force));
     let refused = |room: String| {
         let reason = format!(
-            "E0701: the disk of {room}. The run would stop early, so nothing was run. Free space on the disk, or remove \
+            "E0701: the disk has too little space: {room}. Nothing was run. Free space on the disk, or remove \
              `--strict-space`."
         );
         Refusal::new(exit::WRITE, reason)
     };
     let warning = |room| {
-        format!("W0722: the disk of {room}. The run may stop early. Free space on the disk, or write fewer frames.")
+        format!(
+            "W0722: the disk may have too little space: {room}. The run may stop early. Free space on the disk, \
+            or write fewer frames."
+        )
     };
     let outcome = match shortage {
         Some(room) if arguments.strict_space => Err(refused(room)),

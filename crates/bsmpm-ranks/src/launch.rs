@@ -26,8 +26,8 @@ impl fmt::Display for LaunchFailure {
             ),
             Self::Apart(processes) => write!(
                 f,
-                "E0773: the launcher started {processes} processes that do not find each other. Nothing was run. Use the mpirun of the MPI \
-                 library of this program."
+                "E0773: mpirun started {processes} separate processes, not one parallel run: mpirun belongs to \
+                 another MPI library. Nothing was run. Use the mpirun of this program's MPI library."
             ),
         }
     }
@@ -83,7 +83,8 @@ fn abort_on_panic(end: fn(&SimpleCommunicator, &str) -> !) {
         end(
             &world,
             &format!(
-                "E0774: panic on rank {}{place}: {reason}. This is a defect of the program. Report it with the case file.",
+                "E0774: internal error (panic on rank {}{place}): {reason}. This is a defect of the program. Report \
+                 this message with the case file.",
                 world.rank()
             ),
         );

@@ -98,7 +98,7 @@ fn chosen(case: &Case, arguments: &ElementArguments) -> Result<Vec<StressPath>, 
         return Err(Error::Usage { reason });
     }
     if let Some(name) = arguments.tests.iter().find(|name| !known.contains(&name.as_str())) {
-        let reason = format!("E0852: {path} has no element test `{name}`. Use one of {}.", known.join(", "));
+        let reason = format!("E0852: {path} has no element test `{name}`. Use one of: {}.", known.join(", "));
         return Err(Error::Usage { reason });
     }
     let wanted = |name: &String| arguments.tests.is_empty() || arguments.tests.contains(name);

@@ -21,7 +21,7 @@ pub enum Error {
         reason: String,
     },
     /// A file of reference points cannot be understood.
-    #[error("E0844: `{}` cannot be used: {reason}. Correct the file.", path.display())]
+    #[error("E0844: the file `{}` with reference values cannot be used: {reason}. Correct this file.", path.display())]
     BadReference {
         /// The file.
         path: PathBuf,
@@ -30,7 +30,7 @@ pub enum Error {
     },
     /// A picture could not be drawn.
     #[error(
-        "E0845: the picture {} cannot be drawn: {reason}. This is a fault of `bsmpm`; please report it.",
+        "E0845: the picture {} cannot be drawn: {reason}. This is a defect of the program. Report this message.",
         path.display()
     )]
     Drawing {
@@ -40,7 +40,10 @@ pub enum Error {
         reason: String,
     },
     /// Rows of a validation have failed.
-    #[error("E0808: {failed} row(s) of the validation failed. Look at the table in the output directory.")]
+    #[error(
+        "E0808: {failed} row(s) of the validation failed. Look for the reasons in table.md of the output \
+        directory."
+    )]
     NotValid {
         /// How many.
         failed: usize,
@@ -69,8 +72,8 @@ pub enum Error {
     },
     /// A trial of a search failed because a rigid body slipped, which says nothing of the ground.
     #[error(
-        "E0826: rigid body `{name}` slips in the trial of the {value} {trial}, held by friction only. The soil \
-         does not fail. Remove the motion from its `free`, or use a [[traction]] instead."
+        "E0826: rigid body `{name}`, which only friction supports, slips in the trial with the {value} {trial}. The \
+         soil does not fail. Remove this direction from `free`, or use a [[traction]] instead."
     )]
     LooseBody {
         /// What trials differ by.
@@ -81,7 +84,10 @@ pub enum Error {
         name: String,
     },
     /// A load has reached no limit.
-    #[error("E0854: a load has not reached its limit on every grid. Follow the warnings below the table.")]
+    #[error(
+        "E0854: on at least one grid a load has not reached its limit, so no limit load was found. Follow the \
+        warnings below the table."
+    )]
     NoLimitLoad,
     /// Tests of one point that a material cannot follow.
     #[error("E0853: {} element test(s) could not be completed:\n  {}", failed.len(), failed.join("\n  "))]
@@ -90,13 +96,13 @@ pub enum Error {
         failed: Vec<String>,
     },
     /// No run of several came to its end.
-    #[error("E0834: no run was completed, so there are no results. {} gives the reason for each.", table.display())]
+    #[error("E0834: no run was completed, so there are no results. Look for the reasons in the table {}.", table.display())]
     NoResult {
         /// The table of them.
         table: PathBuf,
     },
     /// A run that is needed ended for a reason of its own.
-    #[error("E0802: {what} failed with exit code {code}, but its result is needed: {reason}")]
+    #[error("E0802: a run whose result is needed failed with exit code {code} ({what}): {reason}")]
     Run {
         /// Which one.
         what: String,
@@ -106,7 +112,7 @@ pub enum Error {
         reason: String,
     },
     /// The solver could not be started.
-    #[error("E0801: the solver `{program}` cannot be started: {source}. Give its path after `--`.")]
+    #[error("E0801: the solver `{program}` cannot be started: {source}. Give the path of `bsmpm-par` after `--`.")]
     Launch {
         /// The first word of the command.
         program: String,

@@ -81,7 +81,10 @@ pub struct EstimateArguments {
 /// Those of the command line and the case before anything runs; [`Error::Run`] if the first steps fail; those of files.
 pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Result<String, Error> {
     if !(arguments.budget.is_finite() && arguments.budget > 0.0) {
-        let reason = format!("E0856: --budget {} is not a time. Give a positive number of seconds.", arguments.budget);
+        let reason = format!(
+            "E0856: --budget {} is not a positive time. Give the time for trial runs in seconds.",
+            arguments.budget
+        );
         return Err(Error::Usage { reason });
     }
     let case = case::parsed(&arguments.case, &case::load(&arguments.case)?, &arguments.set)?;
@@ -102,8 +105,8 @@ pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Res
     let mut report = EstimateReport::of(&arguments.case, &case, ranks, (speed, &found));
     if let Some(actual) = actual {
         if actual.text != case.text {
-            let warning = "W0854: the run to compare with was made of another case, or with other --set. Estimate and result \
-                           differ for that reason, too. Use the case and the --set of the run.";
+            let warning = "W0854: the run of --against has another case or other --set options, so the difference \
+                           shows more than the error of the estimate. Use the case and the --set options of that run.";
             announce(&headed(warning, "warning"));
         }
         report.compare(&actual);

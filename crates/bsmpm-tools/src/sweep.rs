@@ -206,7 +206,8 @@ fn pictures(report: &SweepReport, output: &Path) -> Result<Vec<PathBuf>, Error> 
 fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> {
     let usage = |reason: String| Error::Usage {
         reason: format!(
-            "E0841: the best setting cannot be written to {}: {reason}. Change a copy of the case by hand.",
+            "E0841: the best parameter values cannot be written to the file {}: {reason}. Copy the case, and enter \
+             the printed values by hand.",
             file.display()
         ),
     };

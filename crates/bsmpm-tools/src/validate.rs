@@ -125,8 +125,8 @@ fn parts<'a>(matrix: &'a ValidationMatrix, arguments: &ValidateArguments) -> Res
     }
     let titles: Vec<&str> = matrix.study.iter().map(|study| study.title.as_str()).collect();
     let reason = format!(
-        "E0807: the chosen part of the matrix has no row with a reference, so nothing can fail. Change --only or \
-         --short; the studies are: {}",
+        "E0807: no chosen row of the validation matrix has a reference value, so nothing would be checked. Change \
+         --only, or leave out --short. The studies are: {}",
         titles.join("; ")
     );
     Err(Error::Usage { reason })

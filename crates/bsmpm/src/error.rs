@@ -61,7 +61,7 @@ pub struct WorstNode {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepError {
     /// A point is outside the grid, or was not sorted into this rank's window.
-    #[error("E0740: material point {id} is outside the grid at {x:?}.")]
+    #[error("E0740: material point {id} lies outside the grid, at {x:?} m from the lower corner of the grid.")]
     Outside {
         /// Global id of the point.
         id: u64,
@@ -69,7 +69,7 @@ pub enum StepError {
         x: Vec<f64>,
     },
     /// A point would leave the grid in this step.
-    #[error("E0741: {count} material point(s) would leave the grid.")]
+    #[error("E0741: {count} material point(s) would leave the grid in this step.")]
     Left {
         /// Number of points over all ranks.
         count: u64,
@@ -78,14 +78,18 @@ pub enum StepError {
     },
     /// All material would have left the grid through its outlets.
     #[error(
-        "E0742: all material leaves the grid through its outflow boundaries: the last {count} point(s) go in this step."
+        "E0742: no material would be left: the last {count} material point(s) leave the grid through outflow \
+         boundaries in this step."
     )]
     Emptied {
         /// Number of points over all ranks.
         count: u64,
     },
     /// A load has no material at some of its points any more.
-    #[error("E0743: {points} point(s) of load {load} have lost their material.")]
+    #[error(
+        "E0743: load number {load} (counted from 0: tractions, then point loads) cannot act, because {points} of \
+        its points have no soil."
+    )]
     Unloaded {
         /// Number of the load, tractions first.
         load: usize,
@@ -93,7 +97,10 @@ pub enum StepError {
         points: usize,
     },
     /// Material was pressed together by more than its pores.
-    #[error("E0744: the pores of {count} material point(s) close in iteration {iteration}.")]
+    #[error(
+        "E0744: {count} material point(s) are compressed by more than the volume of their pores in iteration \
+        {iteration}."
+    )]
     Closed {
         /// Number of points over all ranks.
         count: u64,
@@ -101,7 +108,10 @@ pub enum StepError {
         iteration: usize,
     },
     /// A drain or inflow is on material through which no water flows.
-    #[error("E0745: {points} point(s) of drain or inflow {drain} are on impermeable material.")]
+    #[error(
+        "E0745: no water can flow at drain number {drain} (counted from 0: drains, then inflows), because \
+        {points} of its points are on impermeable material."
+    )]
     Undrained {
         /// Number of the drain; the inflows behind the drains.
         drain: usize,
@@ -109,7 +119,10 @@ pub enum StepError {
         points: usize,
     },
     /// Material turned inside out or became non-finite, also with shortened iterations.
-    #[error("E0746: {count} material point(s) turned inside out or lost a finite state in iteration {iteration}.")]
+    #[error(
+        "E0746: {count} material point(s) reach a negative volume, or values that are not finite, in iteration \
+        {iteration}."
+    )]
     Inverted {
         /// Number of points over all ranks.
         count: u64,
@@ -120,8 +133,8 @@ pub enum StepError {
     },
     /// The iteration limit was reached, or no direction led on.
     #[error(
-        "E0747: no convergence after {iterations} iterations{}: {}{}{}.",
-        if *iterations < criteria.max_iterations { "" } else { " (their limit)" },
+        "E0747: no convergence after {iterations} iterations{}. Final residuals: {}{}{}.",
+        if *iterations < criteria.max_iterations { "" } else { " (the limit)" },
         criteria.judged(*energy, (*force, *material)),
         history.last().and_then(|last| last.water).map_or_else(String::new, |water| criteria.judged_water(water)),
         unsolved.as_ref().map_or_else(String::new, |reason| format!("; the linear solver failed: {reason}"))
@@ -146,7 +159,10 @@ pub enum StepError {
     },
     /// The iteration came near a static equilibrium of elastic material along a direction of negative second-order
     /// work: it is not stable, and round-off decides where an iteration goes from there.
-    #[error("E0748: the equilibrium is unstable: the second-order work of iteration {iteration} is {work:.2e} J.")]
+    #[error(
+        "E0748: the equilibrium is unstable, because the second-order work is negative ({work:.2e} J in iteration \
+        {iteration})."
+    )]
     Unstable {
         /// Iteration.
         iteration: usize,
@@ -154,13 +170,16 @@ pub enum StepError {
         work: f64,
     },
     /// No statuses of the nodes on faces with contact were found that the displacement under them agrees with.
-    #[error("E0749: the contact states (open, stick, slip) did not settle in {passes} corrections.")]
+    #[error("E0749: the contact states of the nodes (open, stick, slip) still change after {passes} corrections.")]
     Unsettled {
         /// Corrections made.
         passes: usize,
     },
     /// Rounds towards equilibrium at the start came to no end.
-    #[error("E0750: no initial equilibrium in {rounds} rounds: {force:.1e} of the largest force is unbalanced.")]
+    #[error(
+        "E0750: no initial equilibrium was found in {rounds} rounds of iteration: {force:.1e} of the largest \
+        force is unbalanced."
+    )]
     Unbalanced {
         /// Rounds made.
         rounds: usize,
@@ -170,21 +189,24 @@ pub enum StepError {
         worst: Vec<WorstNode>,
     },
     /// Nothing holds a rigid body that moves freely, and it has no inertia: no equilibrium of it is known.
-    #[error("E0751: rigid body number {body} has no resistance in a free direction.")]
+    #[error(
+        "E0751: nothing supports rigid body number {body} (counted from 0) in a direction in which the body is \
+        free to move."
+    )]
     Loose {
         /// Number of the body.
         body: usize,
     },
     /// Rigid bodies would overlap: they do not touch each other.
-    #[error("E0752: rigid bodies number {} and {} overlap.", bodies[0], bodies[1])]
+    #[error("E0752: rigid bodies number {} and {} (counted from 0) would overlap in this step.", bodies[0], bodies[1])]
     Overlapping {
         /// Numbers of the bodies.
         bodies: [usize; 2],
     },
     /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
     #[error(
-        "E0753: energy was created: kinetic, elastic and dissipated energy exceed the {given:.3e} J supplied by {:.1} % of the peak \
-         energy (limit: {:.0} %).", 100.0 * growth, 100.0 * slack
+        "E0753: energy was created: kinetic, elastic and dissipated energy together exceed the supplied {given:.3e} J \
+         by {:.1} % of the peak energy (limit: {:.0} %).", 100.0 * growth, 100.0 * slack
     )]
     EnergyMade {
         /// Largest excess over the largest energy.
@@ -195,10 +217,10 @@ pub enum StepError {
         slack: f64,
     },
     /// The step was given up on request, see [`Halo::is_interrupted`](crate::parallel::Halo::is_interrupted).
-    #[error("E0754: the step was interrupted by a signal.")]
+    #[error("E0754: the step was interrupted by Ctrl-C, or by a request of the system to stop.")]
     Interrupted,
     /// Another rank has the error; this rank's part was good.
-    #[error("E0755: the step failed on another rank.")]
+    #[error("E0755: the step failed on another rank of this run, whose message names the cause.")]
     OtherRank,
     /// The linear system could not be solved.
     #[error("E0756: the linear system was not solved: {0}.")]

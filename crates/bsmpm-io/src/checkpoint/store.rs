@@ -214,7 +214,7 @@ impl Pending {
         let lacks = |available: String| Error::Space { path: self.path.clone(), needed, available };
         // Beyond the limit the system would not refuse but end the process.
         if let Some(limit) = getrlimit(Resource::Fsize).current.filter(|&limit| limit < needed) {
-            return Err(lacks(format!("files may have {limit}")));
+            return Err(lacks(format!("the system limits files to {limit} bytes")));
         }
         let file = File::options().write(true).open(&self.path).map_err(Error::file("open", &self.path))?;
         match fallocate(&file, FallocateFlags::empty(), 0, needed) {
@@ -236,7 +236,7 @@ impl Drop for Pending {
 
 fn free(path: &Path) -> String {
     let folder = path.parent().unwrap_or(path);
-    disk::free(folder).map_or_else(|_| "more than there are".into(), |bytes| format!("the disk has {bytes} left"))
+    disk::free(folder).map_or_else(|_| "the disk has less".into(), |bytes| format!("the disk has {bytes} bytes left"))
 }
 
 fn record(facts: &Facts, arrays: Vec<RecordedArray>, (bytes, blake3): (u64, String)) -> CheckpointRecord {

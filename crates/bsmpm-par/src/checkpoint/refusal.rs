@@ -32,8 +32,8 @@ impl Refusal {
     pub(crate) fn unusable(path: &Path, reason: &str) -> Self {
         let path = path.display();
         let reason = format!(
-            "E0720: checkpoint `{path}` cannot be used: {reason}. The run was not continued. Name another one with `--restart FILE`, or \
-             start again with `--force`."
+            "E0720: checkpoint `{path}` cannot be used: {reason}. The run was not continued. Name another checkpoint \
+             with `--restart FILE`, or start again with `--force`."
         );
         Self::new(CHECKPOINT, reason)
     }

@@ -222,7 +222,7 @@ impl CheckpointState {
         let text = serde_json::to_vec(self).map_err(|error| error.to_string());
         let whole = text.and_then(|text| match serde_json::from_slice::<Self>(&text) {
             Ok(read) if read == *self => Ok(text),
-            Ok(_) => Err("it reads back otherwise".into()),
+            Ok(_) => Err("the state that is read back differs".into()),
             Err(error) => Err(error.to_string()),
         });
         let lost = |reason: String| {

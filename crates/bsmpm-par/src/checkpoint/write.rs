@@ -107,8 +107,8 @@ fn visible(world: &SimpleCommunicator, path: &Path) -> Result<(), Refusal> {
     let failure = |error: std::io::Error| {
         let (rank, path) = (world.rank(), path.display());
         format!(
-            "E0717: rank {rank} cannot write `{path}`: {error}. The checkpoint is not complete. Use an output directory that all ranks \
-             share."
+            "E0717: rank {rank} cannot write to the checkpoint `{path}`: {error}. The checkpoint is incomplete. Use \
+             an output directory that all hosts share."
         )
     };
     agree(world, opened.map(|_| ()).map_err(|error| Refusal::new(exit::WRITE, failure(error))))

@@ -26,14 +26,16 @@ pub(super) fn of(name: &str, case: &Case, value: f64) -> String {
     }
 }
 
-const NOISE_ABOUT_AVERAGE: &str = "I0001: pressure scatter about the local mean is {value} ({range}). Stresses at single points are unreliable. {remedy}";
-const NOISE_ABOUT_PLANE: &str = "I0002: pressure scatter about a local linear fit is {value} ({range}). Stresses at single points are unreliable. {remedy}";
+const NOISE_ABOUT_AVERAGE: &str = "I0001: pressure scatter of the material points about their local mean is {value} \
+    ({range}). Stresses at single points are unreliable. {remedy}";
+const NOISE_ABOUT_PLANE: &str = "I0002: pressure scatter of the material points about a local linear fit is {value} \
+    ({range}). Stresses at single points are unreliable. {remedy}";
 const ENERGY_MADE: &str = "I0012: numerical dissipation, relative to the peak energy, is {value} ({range}). The algorithm \
                            adds energy to the motion. Reduce `analysis.dt`.";
-const GROWTH: &str = "I0013: energy created by the algorithm, relative to the peak energy, is {value} ({range}). The motion \
-                      is too fast. {remedy}";
-const WALL: &str = "I0019: excess kinetic energy next to fixed boundaries, relative to the total, is {value} ({range}). The \
-                    material slides too far. {remedy}";
+const GROWTH: &str = "I0013: energy created by the algorithm, relative to the peak energy, is {value} ({range}). The \
+                      computed motion is too fast. {remedy}";
+const WALL: &str = "I0019: excess kinetic energy of soil next to fixed boundaries, relative to the total, is {value} \
+                    ({range}). The soil slides too far along these boundaries. {remedy}";
 
 /// What makes material next to a fixed boundary stick to it.
 fn against_sliding(case: &Case) -> &'static str {
@@ -100,36 +102,36 @@ fn constant(name: &str, case: &Case) -> &'static str {
     let is_dynamic = case.analysis.regime == Regime::Dynamic;
     match name {
         "quadrature-defect" => {
-            "I0003: RMS volume error of the material points in filled cells is {value} ({range}). Stresses are off by a similar \
-             amount. Increase `body.points_per_cell`."
+            "I0003: RMS difference between the volumes of full cells and of the material points in them is {value} \
+             ({range}). Stresses are wrong by a similar amount. Increase `body.points_per_cell`."
         }
         "quadrature-defect-largest" => {
-            "I0004: largest volume error of the material points in a filled cell is {value} ({range}). Stresses there are off by a \
-             similar amount. Increase `body.points_per_cell`."
+            "I0004: largest difference between the volumes of a full cell and of the material points in it is {value} \
+             ({range}). Stresses there are wrong by a similar amount. Increase `body.points_per_cell`."
         }
         "points-per-cell" => {
             "I0005: mean number of material points in filled cells is {value} ({range}). The integration is too coarse, and stresses \
              oscillate. Increase `body.points_per_cell`."
         }
         "compression" if may_fit(case) => {
-            "I0006: volume reduction of the most compressed material is {value} ({range}). Its stress is off by up to 1 %. Set \
-             `solver.quadrature = \"fitted\"`, or `body.points_per_cell = 4`."
+            "I0006: volume reduction of the most compressed material is {value} ({range}). The stress of this \
+             material is wrong by up to 1 %. Set `solver.quadrature = \"fitted\"`, or `body.points_per_cell = 4`."
         }
         "compression" => {
-            "I0006: volume reduction of the most compressed material is {value} ({range}). Its stress is off by up to 1 %. Set \
-             `body.points_per_cell = 4`."
+            "I0006: volume reduction of the most compressed material is {value} ({range}). The stress of this \
+             material is wrong by up to 1 %. Set `body.points_per_cell = 4`."
         }
         "force-measure" => {
-            "I0007: largest force residual of an accepted step is {value} ({range}). A step was accepted before it converged, which \
-             is a defect of the program. Report it."
+            "I0007: largest force residual of an accepted step is {value} ({range}). The program accepted a step that \
+             had not converged, which is a defect of the program. Report this message."
         }
         "energy-measure" => {
-            "I0008: largest energy residual of an accepted step is {value} ({range}). A step was accepted before it converged, which \
-             is a defect of the program. Report it."
+            "I0008: largest energy residual of an accepted step is {value} ({range}). The program accepted a step \
+             that had not converged, which is a defect of the program. Report this message."
         }
         "water-measure" => {
-            "I0009: largest water residual of an accepted step is {value} ({range}). A step was accepted before it converged, which \
-             is a defect of the program. Report it."
+            "I0009: largest water residual of an accepted step is {value} ({range}). The program accepted a step that \
+             had not converged, which is a defect of the program. Report this message."
         }
         "water-balance" => {
             "I0010: error of the water balance, relative to the water that moved, is {value} ({range}). Water was created or lost. \
@@ -144,72 +146,72 @@ fn constant(name: &str, case: &Case) -> &'static str {
              Reduce `analysis.dt`."
         }
         "smoothing-length" => {
-            "I0014: length over which strains were smoothed is {value} ({range}). Smaller details of the stress are lost. Use \
-             smaller cells, or another `stabilisation.method`."
+            "I0014: length over which strains were smoothed is {value} ({range}). Details of the stress that are \
+             smaller are lost. Use smaller cells, or another `stabilisation.method`."
         }
         "slip" => {
-            "I0015: largest slip at a rigid footing or segment, relative to its motion, is {value} ({range}). Its force is too small. \
-             Increase `analysis.steps`, or use smaller cells there."
+            "I0015: largest slip of soil along a rigid footing or segment, relative to its motion, is {value} \
+             ({range}). The computed force is too small. Increase `analysis.steps`, or use smaller cells there."
         }
         "support-pull" => {
-            "I0016: largest tension at a boundary, relative to the largest reaction, is {value} ({range}). This is correct at a plane \
-             of symmetry only. Set `\"contact\"` in `[boundary]`."
+            "I0016: largest tension at a boundary, relative to the largest reaction, is {value} ({range}). Tension is \
+             correct at a plane of symmetry only. Set other sides to `\"contact\"` in `[boundary]`."
         }
         "front-setback" => {
-            "I0017: largest retreat of the front is {value} ({range}). The tip is thinner than half a cell, so that the front is not \
-             the run-out. Use smaller cells, or `quantity = \"runout\"`."
+            "I0017: largest backward movement of the front is {value} ({range}). The tip is thinner than half a cell, \
+             so the front is not the run-out distance. Use smaller cells, or `quantity = \"runout\"`."
         }
         "step-advance" => {
-            "I0018: largest displacement of a material point in a step is {value} ({range}). Fronts and contact are off by 5 to 10 %. \
-             Reduce `analysis.dt`."
+            "I0018: largest displacement of a material point in one step is {value} ({range}). The positions of \
+             fronts and contacts are wrong by 5 to 10 %. Reduce `analysis.dt`."
         }
         "rigid-penetration" if is_dynamic => {
-            "I0020: largest penetration of soil into a rigid body is {value} ({range}). Its position is off by this distance. \
-             Reduce `analysis.dt`."
+            "I0020: largest penetration of soil into a rigid body is {value} ({range}). The position of the contact \
+             is wrong by this distance. Reduce `analysis.dt`."
         }
         "rigid-penetration" => {
-            "I0020: largest penetration of soil into a rigid body is {value} ({range}). Its position is off by this distance. \
-             Increase `analysis.steps`."
+            "I0020: largest penetration of soil into a rigid body is {value} ({range}). The position of the contact \
+             is wrong by this distance. Increase `analysis.steps`."
         }
         "interface-shift" if may_fit(case) => {
-            "I0021: distance of a material interface from its grid line is {value} ({range}). Stresses within three cells are wrong. \
-             Set `solver.quadrature = \"fitted\"`, or use larger cells there."
+            "I0021: distance of a material interface from the grid line where it began is {value} ({range}). Stresses \
+             within three cells are wrong. Set `solver.quadrature = \"fitted\"`, or use larger cells there."
         }
         "interface-shift" => {
-            "I0021: distance of a material interface from its grid line is {value} ({range}). Stresses within three cells are wrong. \
-             Use larger cells there."
+            "I0021: distance of a material interface from the grid line where it began is {value} ({range}). Stresses \
+             within three cells are wrong. Use larger cells there."
         }
         "permeability-shift" => {
-            "I0022: distance of an interface of permeabilities from its grid line is {value} ({range}). Flow there is wrong by up to a \
-             factor of 2. Use larger cells there."
+            "I0022: distance of an interface of permeabilities from the grid line where it began is {value} \
+             ({range}). Flow there is wrong by up to a factor of 2. Use larger cells there."
         }
         "cells-across-footing" => {
-            "I0023: number of cells across the footing is {value} ({range}). The failure load is more than 8 % too large. Use smaller \
-             cells there, or extrapolate with `bsmpm limit-load`."
+            "I0023: number of cells across the footing is {value} ({range}). The failure load is more than 8 % too \
+             large. Use smaller cells at the footing, or extrapolate with `bsmpm limit-load`."
         }
         "cells-across-opening" => {
-            "I0024: number of cells across the hole or notch {which} is {value} ({range}). The stress at its edge is off by more than \
-             10 %. Refine `grid.knots` there."
+            "I0024: number of cells across the hole or notch {which} is {value} ({range}). The stress at its edge is \
+             wrong by more than 10 %. Refine `grid.knots` there."
         }
         "force-noise" => {
-            "I0025: scatter of the force {which} from step to step, relative to its peak, is {value} ({range}). Single values are \
-             uncertain. Use smaller cells there, or means over steps."
+            "I0025: scatter of the force {which} from step to step, relative to its peak, is {value} ({range}). \
+             Single values are uncertain. Use smaller cells there, or average the force over several steps."
         }
         "background-load-share" if case.solver.extended_splines == ExtendedSplines::Off => {
-            "I0026: largest force of the soft background, relative to the nodal forces, is {value} ({range}). Material there creeps \
-             from step to step. Remove `solver.extension`."
+            "I0026: largest force of the artificial background stiffness, relative to the nodal forces, is {value} \
+             ({range}). Soil in nearly empty cells creeps from step to step. Remove `solver.extension`."
         }
         "background-load-share" => {
-            "I0026: largest force of the soft background, relative to the nodal forces, is {value} ({range}). Material there creeps \
-             from step to step. Increase `body.points_per_cell`."
+            "I0026: largest force of the artificial background stiffness, relative to the nodal forces, is {value} \
+             ({range}). Soil in nearly empty cells creeps from step to step. Increase `body.points_per_cell`."
         }
         "stiffness-loss" => {
-            "I0027: largest loss of stiffness of the ground{which} is {value} ({range}). Later displacements depend on the number of \
-             steps. Reduce the load, or use `bsmpm fos`."
+            "I0027: largest ratio of the elastic to the actual stiffness of the ground{which} is {value} ({range}). \
+             Displacements after failure are not reliable. Reduce the load, or use `bsmpm fos`."
         }
         "background-work" => {
-            "I0028: work of the soft background, relative to the internal work, is {value} ({range}). Forces are too large by a similar \
-             amount. Reduce `solver.background`."
+            "I0028: work of the artificial background stiffness, relative to the internal work, is {value} ({range}). \
+             Forces are too large by a similar amount. Reduce `solver.background`."
         }
         _ => "",
     }

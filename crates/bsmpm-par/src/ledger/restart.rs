@@ -117,8 +117,8 @@ impl Headings {
             }
             let first = state.steps + 1;
             news.push(format!(
-                "W0738: the earlier steps of `{name}` are missing. It begins with step {first}. Restore the file from a copy if they are \
-                 needed."
+                "W0738: the file `{name}` of the earlier steps is missing, so the new file begins with step {first}. \
+                 If you need the earlier steps, restore the old file from a copy."
             ));
             CsvTable::create(&path, headings)
         };

@@ -111,8 +111,8 @@ fn crowded(world: &SimpleCommunicator, threads: u32) -> Option<String> {
     }
     let all = machine::processors().filter(|&all| threads > 1 && here > all)?;
     Some(format!(
-        "W0721: the ranks of this host have {here} threads for {all} processors. The run is slow. Reduce `--threads` or the number \
-         of ranks."
+        "W0721: the ranks of this host have {here} threads in all, but the host has only {all} processors. The run is \
+         slow. Reduce `--threads` or the number of ranks."
     ))
 }
 
@@ -147,8 +147,8 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
         let foreign = || {
             Refusal::new(
                 exit::CHECKPOINT,
-                "E0719: the checkpoint has other histories than the case. It cannot be continued. Restore the histories of the case, or start \
-             again with `--force`.",
+                "E0719: the case has other histories than the run that wrote the checkpoint. The run cannot be \
+                 continued. Restore the histories of the case, or start again with `--force`.",
             )
         };
         return Ok((simulation, recorder.ok_or_else(foreign)?));

@@ -72,7 +72,8 @@ pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32)
     let Some(run) = run else { return Ok(Beginning::default()) };
     if let Some(gone) = &run.checkpoint {
         return refused(format!(
-            "E0724: checkpoint `{gone}`, which run.json names, is missing. The run cannot be continued. Start it again with `--force`."
+            "E0724: checkpoint `{gone}`, which run.json names, is missing. The run cannot be continued. Restore the \
+             checkpoint, or start again with `--force`."
         ));
     }
     // One that was stopped has a checkpoint, unless that was before it had found its first state.
@@ -80,8 +81,8 @@ pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32)
     if run.status != Status::Running && !kept_nothing {
         let ended = format!("{:?}", run.status).to_lowercase();
         return refused(format!(
-            "E0726: the run in the output directory has {ended} without a checkpoint. It cannot be continued. Start it again with \
-             `--force`."
+            "E0726: the run in the output directory ended ({ended}) without a checkpoint. The run cannot be \
+             continued. Start again with `--force`."
         ));
     }
     futile(&run.restarts, 0)?;
@@ -98,8 +99,8 @@ pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32)
         existing: Existing::Delete,
         restarts: run.restarts.iter().cloned().chain([restart]).collect(),
         warnings: vec![
-            "W0730: the earlier run ended before its first checkpoint. This run starts from the case. Write checkpoints more often with \
-             `output.checkpoint`."
+            "W0730: the earlier run ended before its first checkpoint. This run begins at the first step. Write \
+             checkpoints more often with `output.checkpoint`."
                 .into(),
         ],
     })
@@ -116,7 +117,8 @@ pub(super) fn admissible(what: &str, past: &Manifest, case: &Case) -> Result<Vec
         return Ok(differences);
     }
     Err(refused(format!(
-        "E0721: {what} belongs to another case: {}. It cannot be continued. Restore these keys, or start again with `--force`.",
+        "E0721: the case has changed since {what}: {}. The run cannot be continued. Restore the old values, or start \
+         again with `--force`.",
         bound.join("; ")
     )))
 }
@@ -126,12 +128,12 @@ fn unreadable(what: &str, errors: &[Error]) -> String {
     let removed = errors.iter().find_map(|error| error.removed.map(|removed| (&error.key, removed)));
     match removed {
         None => format!(
-            "E0727: {what} has a case that this version cannot read. It cannot be continued. Use the version that began it, or start \
-             again with `--force`."
+            "E0727: this version of the program cannot read the case of {what}. The run cannot be continued. Use the \
+             version that began the run, or start again with `--force`."
         ),
         Some((key, RemovedWord { word, last, .. })) => format!(
-            "E0728: {what} uses `{key} = \"{word}\"`, which was removed after {last}. It cannot be continued. Use that version, or \
-             start again with `--force`."
+            "E0728: the case of {what} uses `{key} = \"{word}\"`, which was removed after {last}. The run cannot be \
+             continued. Use {last}, or start again with `--force`."
         ),
     }
 }
@@ -139,12 +141,18 @@ fn unreadable(what: &str, errors: &[Error]) -> String {
 /// That a checkpoint is damaged, and an older one is used.
 pub(super) fn passed_over(bad: &str) -> String {
     let reason = without_code(bad).split(". ").next().unwrap_or_default();
-    format!("W0731: {reason}. The run continues from an older checkpoint. Check the disk and the file system.")
+    format!(
+        "W0731: a checkpoint is skipped, because {reason}. The run continues from an older checkpoint. Check the \
+        disk and the file system."
+    )
 }
 
 /// That a key was changed since a checkpoint.
 pub(super) fn changed_since(change: &str) -> String {
-    format!("W0732: since the checkpoint, {change}. The run continues with the new value. Check that this is intended.")
+    format!(
+        "W0732: the case has changed since the checkpoint: {change}. The run continues with the new value. Check \
+        that the change is intended."
+    )
 }
 
 /// Whether the last restarts were all from this step.
@@ -167,8 +175,8 @@ pub(super) fn new_defaults(past: &Manifest, case: &Case) -> Option<String> {
     let solver = &case.solver;
     let goes_on_with = solver.extended_splines == ExtendedSplines::Linear || solver.quadrature == Quadrature::Fitted;
     (began_without && goes_on_with).then(|| {
-        "W0733: the run began in a version with other default methods. Displacements at the surface may jump at this restart. For \
-         consistent results, start again with `--force`."
+        "W0733: the run began with an earlier version, whose default methods differ. Displacements at the surface may \
+         jump at this restart. For consistent results, start again with `--force`."
             .into()
     })
 }
@@ -189,8 +197,8 @@ pub(super) fn other_machine(past: &Manifest, ranks: u32, found: &FoundCheckpoint
     if found.record.ranks != ranks {
         let before = found.record.ranks;
         reasons.push(format!(
-            "W0734: the checkpoint was written on {before} rank(s), and the run continues on {ranks}. Results agree within tolerances \
-             only. Use {before} rank(s) for identical results."
+            "W0734: the checkpoint was written on {before} rank(s), and the run continues on {ranks} rank(s). Results \
+             agree within the solver's tolerances only. Use {before} rank(s) for identical results."
         ));
     }
     let version = env!("CARGO_PKG_VERSION");

@@ -56,8 +56,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 let (value, least, most) = (number(check.value), number(check.min), number(check.max));
                 let quantity = &check.quantity;
                 run.log.failure(&format!(
-                    "E0730: check of `{quantity}` failed: it is {value} (allowed: {least} to {most}). The run is complete, with exit \
-                     code 77. Look at history.csv, or change the limits of [[check]]."
+                    "E0730: the check of `{quantity}` failed: the value is {value} (allowed: {least} to {most}). The \
+                     run is complete, with exit code 77. Look at history.csv, or change the limits of [[check]]."
                 ));
             }
         }

@@ -28,8 +28,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         if machine::has_reference_blas() {
             self.warn(
-                "W0714: the linear algebra library (BLAS) is the slow reference version. Runs take several times as long. On Debian, \
-                 install libopenblas0-serial."
+                "W0714: the linear algebra library (BLAS) is the slow reference version. Runs take several times as \
+                 long. Install an optimised BLAS, on Debian libopenblas0-serial."
                     .into(),
             );
         }
@@ -80,8 +80,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         if yielding > 0 {
             self.warn(format!(
-                "W0719: the initial stress exceeds the strength at {yielding} material point(s). The first step moves the soil. Set \
-                 `initial.equilibrium = \"plastic\"`."
+                "W0719: the initial stress exceeds the strength at {yielding} material point(s), so the soil will \
+                 move at the start. Set `initial.equilibrium = \"plastic\"`."
             ));
         }
     }
@@ -92,21 +92,22 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         // Linear elastic equilibrium is lost by nothing but yield.
         match &self.case.initial {
             Some(Initial::AtRest(_)) if !sudden.is_empty() => format!(
-                "W0715: the initial stress leaves {percent:.1} % of the largest force unbalanced (limit: 2 %), as it excludes {}. The \
-                 first step moves the soil. Apply them over a `ramp`.",
+                "W0715: the stress from [initial] ignores {}: {percent:.1} % of the largest force is unbalanced \
+                 (limit: 2 %), so the soil will move at the start. Apply these loads over a `ramp`.",
                 sudden.join(", ")
             ),
             _ if !self.case.rigid.is_empty() => format!(
-                "W0716: the initial stress leaves {percent:.1} % of the largest force unbalanced (limit: 2 %), as it excludes rigid \
-                 bodies. The soil moves. Use `gravity.ramp` instead of [initial]."
+                "W0716: the stress from [initial] ignores rigid bodies: {percent:.1} % of the largest force is \
+                 unbalanced (limit: 2 %), so the soil will move at the start. Use `gravity.ramp` instead of \
+                 [initial]."
             ),
             Some(Initial::Elastic) => format!(
-                "W0717: the elastic initial stress leaves {percent:.1} % of the largest force unbalanced (limit: 2 %), as the soil \
-                 yields. The first step moves it. Set `initial.equilibrium = \"plastic\"`."
+                "W0717: soil yields under the elastic initial stress: {percent:.1} % of the largest force is \
+                 unbalanced (limit: 2 %), so the soil will move. Set `initial.equilibrium = \"plastic\"`."
             ),
             _ => format!(
-                "W0718: the initial stress by k0 leaves {percent:.1} % of the largest force unbalanced (limit: 2 %). The first step \
-                 moves the soil. Set `initial.equilibrium = \"plastic\"`."
+                "W0718: the initial stress from `k0` is not in equilibrium: {percent:.1} % of the largest force is \
+                 unbalanced (limit: 2 %), so the soil will move. Set `initial.equilibrium = \"plastic\"`."
             ),
         }
     }

@@ -28,7 +28,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let misspelt: Vec<String> = unused.into_iter().filter(given).collect();
         for name in misspelt {
             let warning = format!(
-                "W0701: the PETSc option -{name} was not used. The solver ignores it. Check its spelling, and whether the solver has it."
+                "W0701: the linear solver did not use the PETSc option -{name}, which has no effect. Check its \
+                 spelling, and whether this solver has the option."
             );
             self.warn(warning);
         }
@@ -41,14 +42,16 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let (advance, depth) = (report.advance, report.penetration);
             if advance > FASTEST && self.warned_rigid.insert(2 * number) {
                 self.warn(format!(
-                    "W0702: rigid body `{name}` moves {advance:.2} cells in a step at t = {t} (limit: {FASTEST}). Contact is detected too \
-                     late. Increase `analysis.steps`, or reduce `analysis.dt`."
+                    "W0702: rigid body `{name}` moves by {advance:.2} cells in one step at t = {t} (limit: \
+                     {FASTEST}). Contact with the soil is detected too late. Increase `analysis.steps`, or reduce \
+                     `analysis.dt`."
                 ));
             }
             if depth > DEEPEST && self.warned_rigid.insert(2 * number + 1) {
                 self.warn(format!(
-                    "W0703: rigid body `{name}` penetrates the soil by {depth:.2} cells at t = {t} (limit: {DEEPEST}). Its force is \
-                     inaccurate. Increase `analysis.steps`, or reduce `analysis.dt`."
+                    "W0703: rigid body `{name}` penetrates the soil by {depth:.2} cells at t = {t} (limit: \
+                     {DEEPEST}). The force on the body is inaccurate. Increase `analysis.steps`, or reduce \
+                     `analysis.dt`."
                 ));
             }
         }
@@ -98,19 +101,20 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let mut kind = number;
             let warning = if strip.held == 0 {
                 format!(
-                    "W0705: `{name}` touches no material at t = {t}. It has no effect. Check its position and its path."
+                    "W0705: `{name}` touches no soil at t = {t}, and carries no load. Check the position and the path \
+                     of `{name}`."
                 )
             } else if 2 * strip.left_behind > points {
                 kind += accepted.report.strips.len();
                 format!(
-                    "W0706: `{name}` lost contact at t = {t}: most of it is more than half a cell from the material. Its reaction is no \
-                     longer valid. Use smaller cells, or reduce the uplift."
+                    "W0706: `{name}` lost contact with the soil at t = {t}: most of it is more than half a cell away. \
+                     The reaction is no longer valid. Use smaller cells, or reduce the uplift."
                 )
             } else if strip.moved_on > 0 {
                 kind += 2 * accepted.report.strips.len();
                 format!(
-                    "W0707: `{name}` returns to the soil at t = {t} at another place than it left. The ground is assumed to be level \
-                     there. Let it return at the same place."
+                    "W0707: `{name}` returns to the soil at t = {t}, but not where it separated. The program assumes \
+                     level ground between the two places. Let `{name}` return at the same place."
                 )
             } else {
                 continue;
@@ -135,8 +139,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
             if self.warned_strips.insert(of_strips + number) {
                 self.warn(format!(
-                    "W0708: most of `{name}` has no soil near it at t = {t}. Water does not flow there. If the surface heaves, extend the \
-                     grid by a cell beyond it."
+                    "W0708: most of `{name}` has no soil nearby at t = {t}. No water flows there. If the surface \
+                     heaves, extend the grid by one cell above the heaved surface."
                 ));
             }
         }
@@ -144,8 +148,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
             if self.warned_strips.insert(of_strips + points.len() + number) {
                 self.warn(format!(
-                    "W0709: the surface of `{name}` has torn by {:.1} cells at t = {t}. The new surface is impermeable. Compare the result \
-                     with that of `drainage = \"hydrostatic\"`.",
+                    "W0709: the surface of `{name}` tore open by {:.1} cells at t = {t}. No water drains through the \
+                     new faces. To see the influence, run also with `drainage = \"hydrostatic\"`.",
                     water.torn[number]
                 ));
             }
@@ -167,12 +171,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let share = 100.0 * face.off as f64 / face.near.max(1) as f64;
             self.warn(match sealed {
                 true => format!(
-                    "W0710: `{name}` has no soil at its boundary at t = {t}. Water cannot cross it. Use `surface`, or `from` and `to`, so \
-                     that the drain moves with the soil."
+                    "W0710: the soil has left the drained boundary of `{name}` at t = {t}. No water drains there. \
+                     Define the drain by `surface`, or `from` and `to`, so that it moves with the soil."
                 ),
                 false => format!(
-                    "W0711: {share:.0} % of the soil at `{name}` has moved off its boundary at t = {t}. The flow there is too small. Use \
-                     `surface`, or `from` and `to`, so that the drain moves with the soil."
+                    "W0711: {share:.0} % of the soil has left the drained boundary of `{name}` at t = {t}. Too little \
+                     water drains. Define the drain by `surface`, or `from` and `to`, so that it moves with the soil."
                 ),
             });
         }
@@ -182,8 +186,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     pub(super) fn tell_vacant(&mut self) {
         if let Some(names) = self.recorder.vacant() {
             self.warn(format!(
-                "W0712: no material point entered the box of these histories: {names}. Their values are 0. Move the box, which is \
-                 fixed in space, to where the soil is."
+                "W0712: no material point entered the box of these histories: {names}. The values of these histories \
+                 are 0. Move the box, which is fixed in space, to where the soil is."
             ));
         }
     }
@@ -205,8 +209,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         for name in lost {
             let t = short(accepted.t);
             self.warn(format!(
-                "W0713: the material point of history `{name}` left the grid at t = {t}. Its values are 0 from then on. Use a larger \
-                 grid, or another point."
+                "W0713: the material point of history `{name}` left the grid at t = {t}. The values of the history \
+                 are 0 from then on. Use a larger grid, or follow another point."
             ));
         }
     }

@@ -43,8 +43,8 @@ fn read(
     let material = material(record, materials, report);
     let stages = record.records("stage");
     if record.gives("stage") && stages.is_empty() {
-        let message =
-            "E0690: the test has no stage. Add for example stage = [{ test = \"triaxial\", compression = 0.05 }].";
+        let message = "E0690: the test has no stage, so nothing is applied to the soil. Add for example stage = [{ test = \
+             \"triaxial\", compression = 0.05 }].";
         record.consequence("stage", message, &[&record.path_of("stage")], report);
     }
     let mut undrained = false;
@@ -63,7 +63,8 @@ fn read(
     let graded = materials[material].material.is_graded();
     if graded && !record.gives("height") {
         let message = format!(
-            "E0692: the parameters of material.{} vary with height, and the test needs one height. Add `height`.",
+            "E0692: the parameters of material.{} vary with height, so the test must give the height of its point. \
+             Add `height`.",
             materials[material].name
         );
         report.error(record.origin, &record.path_of("height"), message);
@@ -71,7 +72,7 @@ fn read(
     }
     if !graded && record.gives("height") {
         let message = format!(
-            "E0692: the parameters of material.{} do not vary with height. Remove `height`.",
+            "E0692: the parameters of material.{} do not vary with height, so `height` has no effect. Remove `height`.",
             materials[material].name
         );
         record.error("height", message, report);
@@ -112,12 +113,14 @@ fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
         Path::Mixed => &DRIVES[2..],
     };
     for key in DRIVES.iter().filter(|key| !known.contains(key) && record.gives(key)) {
-        let message = format!("E0694: the test \"{path}\" has no such key. Remove `{key}`.");
+        let message = format!("E0694: the key `{key}` has no effect in the test \"{path}\". Remove `{key}`.");
         record.error(key, message, report);
     }
     let missing = |keys: &[&str], report: &mut Report<'_>| {
-        let message =
-            format!("E0694: the test \"{path}\" does not say what is applied. Add `{}`.", keys.join("` or `"));
+        let message = format!(
+            "E0694: the test \"{path}\" does not say which strain or stress is applied. Add `{}`.",
+            keys.join("` or `")
+        );
         report.error(record.origin, &record.path, message);
     };
     let given = |keys: &[&'static str]| keys.iter().copied().find(|key| record.gives(key));

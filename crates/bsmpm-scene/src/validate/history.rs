@@ -41,8 +41,11 @@ pub(super) fn read_all(
     for record in records {
         let Some(history) = read((root, record), (regime, grid, made), report) else { continue };
         if let Some(column) = history.columns().into_iter().find(|column| !taken.insert(column.name.clone())) {
-            let message =
-                format!("E0610: another history has the column `{}`. Give this one a different `name`.", column.name);
+            let message = format!(
+                "E0610: another history already writes the column `{}` of history.csv. Give this history a \
+                    different `name`.",
+                column.name
+            );
             record.error("name", message, report);
         }
         histories.push(history);
@@ -60,37 +63,44 @@ fn read(
     let (own, needed) = own_keys(measured, root.word("geometry"));
     let belongs = |key: &&str| own.contains(key) || needed.contains(key) || (*key == "of" && of_strip);
     for key in KEYS.into_iter().filter(|key| !belongs(key) && record.gives(key)) {
-        let message = format!("E0642: the quantity \"{measured}\" has no such key. Remove `{key}`.");
+        let message = format!("E0642: the key `{key}` has no effect on the quantity \"{measured}\". Remove `{key}`.");
         record.error(key, message, report);
     }
     if of_strip && record.gives("face") {
-        let message = "E0643: both `face` and `of` are given, and they name different surfaces. Remove one of them.";
+        let message = "E0643: the history has both `face` (a side of the grid) and `of` (a footing or motion), but \
+            can measure only one. Remove one of the two keys.";
         record.error("of", message, report);
     }
     for key in needed.iter().filter(|key| !record.gives(key) && !of_strip) {
-        let message = format!("E0644: the quantity \"{measured}\" needs this key. Add `{key}`.");
+        let message = format!("E0644: the quantity \"{measured}\" cannot be measured without `{key}`. Add `{key}`.");
         report.error(record.origin, &record.path_of(key), message);
     }
     if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
         record.error("quantity", needs_dynamics(measured.word()), report);
     }
     if measured.is_of_footing() && !root.gives("footing") {
-        let message =
-            format!("E0646: the quantity \"{measured}\" needs a [footing], and the case has none. Add [footing].");
+        let message = format!(
+            "E0646: the quantity \"{measured}\" needs a footing, and the case has none. Add [footing], or use \
+                another quantity."
+        );
         record.consequence("quantity", message, &["footing"], report);
     }
     if measured.is_of_flow() && !flow::flows(root) {
         record.error("quantity", needs_flow(measured.word()), report);
     }
     if record.number("scale") == Some(0.0) {
-        record.error("scale", "E0647: a scale of 0 makes the whole column 0. Use another scale.", report);
+        record.error(
+            "scale",
+            "E0647: with scale = 0 all values of this history would be 0. Use another scale.",
+            report,
+        );
     }
     if let Some(side) = record.word::<Side>("face").filter(|_| measured.is_of_contact())
         && !supports(root, side).contains(&Support::Contact)
     {
         let message = format!(
-            "E0646: the quantity \"{measured}\" needs a boundary in contact, and `{side}` is not. Set boundary.{side} \
-             = \"contact\"."
+            "E0646: the quantity \"{measured}\" needs contact, but the boundary `{side}` is not in contact. Set \
+             boundary.{side} = \"contact\"."
         );
         record.error("face", message, report);
     }
@@ -99,7 +109,7 @@ fn read(
     {
         let message = format!(
             "E0646: nothing supports the boundary `{side}`, so its reaction is always 0. Name another `face`, or set \
-             boundary.{side}."
+             boundary.{side} to \"fixed\" or \"roller\"."
         );
         record.consequence("face", message, &["boundary", "prescribed", "stage"], report);
     }
@@ -135,8 +145,8 @@ fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut
     let (strip, _, key) = strips[number];
     if measured.is_of_contact() && strip.record(key).is_none() {
         let message = format!(
-            "E0646: the quantity \"{measured}\" needs frictional contact, and {} is tied to the ground. Add `{key}` \
-             to it.",
+            "E0646: the quantity \"{measured}\" needs frictional contact, but {0} is tied to the ground. Add `{key}` \
+             to {0}.",
             strip.path
         );
         record.consequence("of", message, &[&strip.path], report);
@@ -161,14 +171,12 @@ fn is_never_held(root: &Record, side: Side) -> bool {
 
 /// The error of a time after the end of the run.
 pub(super) fn after_the_end(time: f64) -> String {
-    format!(
-        "E0663: the time t = {time} is after the end of the run. Use a time up to `analysis.end`, or increase that."
-    )
+    format!("E0663: the time t = {time} is after the end of the run. Use an earlier time, or increase `analysis.end`.")
 }
 
 /// The error of too many tables.
 pub(super) fn too_many(number: usize, most: usize) -> String {
-    format!("E0640: the case has {number} of these tables, and at most {most} are possible. Remove some.")
+    format!("E0640: the case has {number} tables of this kind (limit: {most}). Remove some of these tables.")
 }
 
 /// The error of a quantity that a quasi-static analysis does not have.
@@ -182,8 +190,8 @@ pub(super) fn needs_dynamics(quantity: &str) -> String {
 /// The error of a quantity of flowing water.
 pub(super) fn needs_flow(quantity: &str) -> String {
     format!(
-        "E0646: the quantity \"{quantity}\" needs flow of water. Set drainage = \"coupled\" or \"undrained\" in a \
-         material."
+        "E0646: the quantity \"{quantity}\" needs flow of water, which no material has. Set drainage = \"coupled\" or \
+         \"undrained\" in a material."
     )
 }
 
@@ -335,7 +343,10 @@ fn material(record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> O
         return None;
     };
     if bodies.iter().all(|body| body.material != number) {
-        let message = format!("E0613: no body consists of the material `{name}`. Name another material.");
+        let message = format!(
+            "E0613: no body consists of the material `{name}`, so there is nothing to measure. Name \
+            the material of a body."
+        );
         record.error("material", message, report);
         return None;
     }
@@ -363,8 +374,8 @@ fn weighing(of: Counted, record: &Record, made: CaseBodies<'_>, report: &mut Rep
     };
     let mut counted = bodies.iter().enumerate().filter(|(number, body)| counts(*number, body));
     if !counted.any(|(_, body)| materials[body.material].density.is_some()) {
-        let message =
-            "E0646: the quantity needs mass, and this part of the ground has none. Add `unit_weight` to its material.";
+        let message = "E0646: this quantity needs the mass of the soil, but the material of this part of the ground has no \
+             weight. Add `unit_weight` to the material.";
         record.error("quantity", message, report);
         return None;
     }
@@ -384,11 +395,11 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
         let names: Vec<String> = columns().map(|(_, column)| column.name).collect();
         let known = match nearest(quantity, names.iter().map(String::as_str)) {
             Some(near) => format!("did you mean `{near}`?"),
-            None if names.is_empty() => "the case has none".to_owned(),
-            None => format!("columns: {}", names.join(", ")),
+            None if names.is_empty() => "the case has no history".to_owned(),
+            None => format!("known columns: {}", names.join(", ")),
         };
         let message = format!(
-            "E0660: no [[history]] has a column `{}` ({known}). Correct the name, or add a [[history]].",
+            "E0660: no [[history]] records a column `{}` ({known}). Correct the name, or add a [[history]].",
             shortened(quantity)
         );
         record.consequence("quantity", message, &["history"], report);
@@ -401,12 +412,14 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
     let (min, max) = (bound("min", record, &column, report)?, bound("max", record, &column, report)?);
     match (min, max) {
         (None, None) => {
-            let message = "E0661: the check has no bound, so it checks nothing. Add `min`, `max` or both.";
+            let message = "E0661: the check has no limit, so it can never fail. Add `min`, `max` or both.";
             report.error(record.origin, &record.path, message);
         }
         (Some(min), Some(max)) if min > max => {
-            let message =
-                format!("E0661: the lower bound {min} exceeds the upper bound {max}. Exchange `min` and `max`.");
+            let message = format!(
+                "E0661: `min` = {min} is larger than `max` = {max}, so the check could never pass. Exchange \
+                    `min` and `max`."
+            );
             record.error("min", message, report);
         }
         _ => {}
@@ -427,7 +440,7 @@ fn bound(key: &str, record: &Record, column: &Column, report: &mut Report<'_>) -
     }
     let allowed = expected.map_or("a number".to_owned(), |expected| expected.to_string());
     let message = format!(
-        "E0665: the value is {dimension}, but the column `{}` needs {allowed}. Correct the unit of the bound.",
+        "E0665: this limit is {dimension}, but the column `{}` is {allowed}. Correct the unit of `{key}`.",
         column.name
     );
     record.error(key, message, report);

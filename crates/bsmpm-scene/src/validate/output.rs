@@ -19,12 +19,12 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
         if every > end {
             report.warn(format!(
                 "W0661: output.every: the interval of {every} is longer than the run of {end}, so only the first and \
-                 last frames are written. Reduce it."
+                 last frames are written. Reduce `every`."
             ));
         }
         if end / every > super::MOST_STEPS {
             let message = format!(
-                "E0662: this interval gives {:.3e} frames, and at most {:e} are possible. Increase `every`.",
+                "E0662: with this interval the run would write {:.3e} frames (limit: {:e}). Increase `every`.",
                 end / every,
                 super::MOST_STEPS
             );

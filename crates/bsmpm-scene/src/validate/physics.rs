@@ -43,8 +43,12 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 /// Times that lie so near to the start that no step ends there.
 fn too_soon(case: &Case, record: &Record, report: &mut Report<'_>) {
     let least = 1e-6 * case.analysis.dt;
-    let message =
-        |time: f64| format!("E0664: the time {time:e} is not after the start, t = 0. Use a time above {least:e}.");
+    let message = |time: f64| {
+        format!(
+            "E0664: the time t = {time:e} is too early: no step ends so close to the start, t = 0. \
+            Use a time above {least:e}."
+        )
+    };
     if let (Some(time), Some(output)) = (case.output.times.first(), record.record("output"))
         && *time <= least
     {
@@ -151,21 +155,21 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         if case.gravity.is_some() && case.initial.is_none() {
             refuse(
-                "E0672: an absorbing boundary carries initial stresses only, so the ground would sink through it \
-                 under gravity. Add [initial].",
+                "E0672: without initial stresses an absorbing boundary carries no weight, so the ground would sink \
+                 through the boundary. Add [initial].",
             );
         }
         if case.boundary[1 - axis].contains(&Support::Contact) {
             refuse(
                 "E0673: this absorbing boundary shares a corner with a boundary in contact, and the corner would be \
-                 constrained twice. Make the other one \"fixed\" or \"absorbing\".",
+                 constrained twice. Make the boundary in contact \"fixed\" or \"absorbing\".",
             );
         }
         let absorbs = case.boundary[axis][upper] == Support::Absorbing;
         if absorbs && axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
             refuse(
-                "E0674: in an earthquake the ground moves with the free field, and an absorbing side would hold it \
-                 back. Use \"free-field\".",
+                "E0674: in an earthquake the ground moves sideways, and an absorbing side would hold the ground back. \
+                 Use \"free-field\".",
             );
         }
     }
@@ -176,8 +180,8 @@ fn shaken(case: &Case, report: &mut Report<'_>) {
     for (component, name) in ["x", "y", "z"].into_iter().enumerate() {
         if case.shaking.iter().any(|(_, ground)| ground[component] != 0.0) && !holds(case, component) {
             report.warn(format!(
-                "W0670: shaking: the base moves along {name}, but no body is supported along {name}, so none follows \
-                 it. Fix a side along {name}, usually the bottom."
+                "W0670: shaking: the base moves along {name}, but no boundary supports the ground along {name}, so \
+                 the ground stays behind. Make a side \"fixed\", usually the bottom."
             ));
         }
     }
@@ -212,8 +216,8 @@ fn thrown_back(case: &Case, report: &mut Report<'_>) {
         return;
     }
     report.warn(format!(
-        "W0671: analysis.dt: a step of {:.3e} s is longer than {MOST_CROSSINGS} passages of a wave through {name} \
-         ({time:.3e} s), so impacts gain energy. Use dt = {:.1e} s or less.",
+        "W0671: analysis.dt: in a step of {:.3e} s a wave crosses the body of {name} more than {MOST_CROSSINGS} times \
+         (one passage: {time:.3e} s), so impacts gain energy. Use dt = {:.1e} s or less.",
         case.analysis.dt,
         MOST_CROSSINGS * time
     ));
@@ -247,8 +251,8 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let is_sought = case.settles || case.initial == Some(Initial::Elastic);
     if footing && !stands && is_sought {
         report.warn(
-            "W0672: footing: nothing else supports the ground, so it hangs from the footing in the initial \
-             equilibrium. Fix a side, or activate the footing in a [[stage]].",
+            "W0672: footing: the ground hangs from the footing in the initial equilibrium, because nothing else \
+             supports the ground. Fix a side, or activate the footing in a [[stage]].",
         );
     }
     let since_start = |case: &Case, number: usize| {
@@ -259,8 +263,8 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         case.prescribed[number].rests = lies && lifts;
         if lies && !lifts && is_sought && since_start(case, number) {
             report.warn(format!(
-                "W0672: {}: the ground hangs from this prescribed motion in the initial equilibrium. Activate it in a \
-                 [[stage]], or use [footing].",
+                "W0672: {}: the ground hangs from this prescribed motion in the initial equilibrium. Activate the \
+                 motion in a [[stage]], or use [footing].",
                 record.path
             ));
         }
@@ -361,8 +365,8 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
     }
     if case.analysis.regime == Regime::QuasiStatic && !loaded(case) {
         report.warn(
-            "W0674: the case has no load: neither gravity, nor a force or pressure, nor a prescribed motion. Add one \
-             of them, for example [gravity].",
+            "W0674: the case has no load (gravity, force, pressure or prescribed motion), so all results will be 0. \
+             Add a load, for example [gravity].",
         );
     }
 }

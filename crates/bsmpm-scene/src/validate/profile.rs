@@ -28,7 +28,8 @@ pub(super) fn read_all(
         // Some file systems do not distinguish upper and lower case.
         if profiles.iter().any(|other| other.name.eq_ignore_ascii_case(&profile.name)) {
             let message = format!(
-                "E0610: another profile has the name `{}` (upper and lower case count as equal). Rename one of them.",
+                "E0610: another profile has the name `{}` (upper and lower case count as equal). Rename one of the \
+                 two profiles.",
                 profile.name
             );
             record.error("name", message, report);
@@ -57,7 +58,7 @@ fn read(
     let mut times = if record.gives("times") { record.numbers("times")?.to_vec() } else { Vec::new() };
     if record.gives("times") && times.is_empty() {
         let message = "E0652: the list is empty, so the profile is never written. Give a time, or remove `times` to \
-                       write it with every frame.";
+                       write the profile with every frame.";
         record.error("times", message, report);
     }
     if let Some(late) = times.iter().find(|time| end.is_some_and(|end| **time > end)) {

@@ -25,8 +25,8 @@ pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mu
     let followed = || times.iter().flat_map(|t| case.followed_at(*t));
     if let Some(named) = followed().find(|named| !named.material.is_linear()) {
         let message = format!(
-            "E0630: the strength of material.{} (modified Cam-clay) cannot be reduced at the end of a stage. Reduce \
-             it from the start, without `stage`.",
+            "E0630: the strength of material.{} (modified Cam-clay) can be reduced from the start of the run only. \
+             Use [strength_reduction] without `stage`.",
             named.name
         );
         record.error(key, message, report);
@@ -39,8 +39,8 @@ pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mu
 /// The warning that a strength reduction at a key path has nothing to reduce.
 pub(super) fn without_strength(path: &str) -> String {
     format!(
-        "W0601: {path}: the strength reduction has no effect, because neither a material nor a contact has a \
-         strength. Remove it, or use a material that yields."
+        "W0601: {path}: the strength reduction has no effect, because no material yields and no contact has friction. \
+         Remove the reduction, or use a material that yields."
     )
 }
 
@@ -49,16 +49,16 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     let Some(table) = root.record("strength_reduction") else { return };
     if !table.gives("stage") {
         let of_stage = ["steps", "drainage"].into_iter().filter(|key| table.gives(key));
-        let message = "E0631: the key has no effect without `stage`, the stage at whose end the strength is reduced. \
-                       Remove it, or add `stage`.";
+        let message = "E0631: this key has no effect without `stage`, which names the stage at whose end the strength \
+                       is reduced. Remove this key, or add `stage`.";
         of_stage.for_each(|key| table.error(key, message, report));
         return;
     }
     let (Some(name), Some(factor)) = (table.text("stage"), table.number("factor")) else { return };
     let (Some(steps), Some(unloaded)) = (table.count("steps"), table.flag("unloaded")) else { return };
     if case.analysis.regime == Regime::Dynamic {
-        let message = "E0632: a strength reduction at the end of a stage needs a quasi-static analysis. In a dynamic \
-                       one, set `strength_reduction` in a [[stage]].";
+        let message = "E0632: [strength_reduction] with `stage` needs a quasi-static analysis, but this analysis is \
+                       dynamic. Set `strength_reduction` in a [[stage]] instead.";
         table.error("stage", message, report);
     }
     let Some(until) = case.end_of_stage(name) else {
@@ -67,8 +67,8 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         return;
     };
     if until == 0.0 && case.initial.is_none() && !unloaded {
-        let message =
-            "E0634: there is no stress at the start that could cause failure. Add [initial], or use stage = \"end\".";
+        let message = "E0634: the ground has no stress at the start, so the ground cannot fail there at any strength. \
+             Add [initial], or use stage = \"end\".";
         table.error("stage", message, report);
         return;
     }
@@ -87,13 +87,13 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         load_at_once(case, case.just_before(until), steps)
     } else {
         if steps > 0 && case.still_grows(until) {
-            let message = "E0636: a load still changes at the end of this stage, and would change during the strength \
-                           reduction. End its `ramp` or `amplitude` earlier.";
+            let message = "E0636: a load still changes when this stage ends, and would go on changing during the \
+                           strength reduction. End its `ramp` or `amplitude` before the stage ends.";
             table.error("stage", message, report);
         }
         if steps > 0 && case.still_moves(until) {
-            let message = "E0636: a footing or prescribed motion still moves at the end of this stage, and would move \
-                           during the strength reduction. End its path earlier.";
+            let message = "E0636: a footing or prescribed motion still moves when this stage ends, and would go on \
+                           moving during the strength reduction. End its `path` before the stage ends.";
             table.error("stage", message, report);
         }
         reduce(case, (until, steps), factor)
@@ -107,8 +107,8 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
     let made: Vec<bool> = (0..case.materials.len()).map(|number| case.is_followed(number)).collect();
     let Some(flow) = &mut case.flow else {
         if table.word("drainage") == Some(Failure::Undrained) {
-            let message = "E0637: the case has no flow of water, so its failure cannot be undrained. Remove \
-                           `drainage`, or set drainage = \"undrained\" in a material.";
+            let message = "E0637: undrained failure needs flow of water, which no material has. Remove `drainage` \
+                           here, or set drainage = \"undrained\" in a material.";
             table.error("drainage", message, report);
         }
         return;
@@ -122,8 +122,8 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
     let changed =
         [("elastic", table.flag("elastic") == Some(true)), ("stiffness", table.number("stiffness") != Some(1.0))];
     for (key, _) in changed.into_iter().filter(|(_, changed)| *changed && !unloaded) {
-        let message = "E0638: the key would change the material from the first step on, and with it the \
-                       consolidation. Remove it, or set unloaded = true.";
+        let message = "E0638: this key changes the stiffness from the first step on, so the consolidation would be \
+                       wrong. Remove this key, or set unloaded = true.";
         table.error(key, message, report);
     }
 }

@@ -54,14 +54,14 @@ fn weights(
         Some(Quadrature::Fitted) => {}
     }
     if order? == 3 {
-        let message =
-            "E0602: the quadrature \"fitted\" does not converge with cubic splines. Use quadrature = \"points\".";
+        let message = "E0602: the solver does not converge with quadrature = \"fitted\" and cubic splines. Use quadrature = \
+             \"points\".";
         solver.error("quadrature", message, report);
         return None;
     }
     if regime? == Regime::Dynamic {
-        let message = "E0602: the quadrature \"fitted\" changes the energy of moving material, so it is not available \
-                       in dynamics. Use quadrature = \"points\".";
+        let message = "E0602: quadrature = \"fitted\" changes the energy of moving soil, and is not available in a \
+                       dynamic analysis. Use quadrature = \"points\".";
         solver.error("quadrature", message, report);
         return None;
     }
@@ -95,11 +95,11 @@ fn extended_splines(
     let given = solver.word_if_given(EXTENSION)?;
     let refusal = match (regime?, order?) {
         (Regime::Dynamic, _) => {
-            "E0603: extension = \"linear\" is not available in dynamics, where it accelerates layers thinner than a \
-             cell. Use extension = \"off\"."
+            "E0603: extension = \"linear\" is not available in a dynamic analysis, where thin layers would move too \
+             fast. Use extension = \"off\"."
         }
         (Regime::QuasiStatic, 3) => {
-            "E0603: extension = \"linear\" is not available with cubic splines, where it does not improve the result. \
+            "E0603: extension = \"linear\" does not improve results with cubic splines, and is not available there. \
              Use extension = \"off\"."
         }
         (Regime::QuasiStatic, _) => {
@@ -205,7 +205,10 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let is_own = case.solver.linear.pc == Pc::SplineMultigrid;
     if (is_own || case.solver.linear.applications > 0) && (case.flow.is_some() || condenses) {
         let what = if condenses { "freely moving rigid bodies" } else { "flow of water" };
-        let message = format!("E0604: this linear solver is not available with {what}. Use linear = \"direct\".");
+        let message = format!(
+            "E0604: the chosen linear solver is not available for a case with {what}. Use linear = \
+            \"direct\"."
+        );
         solver.error("linear", message, report);
         return;
     }
@@ -286,8 +289,8 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
     let ksp = asked.ksp.unwrap_or(if pc.solves() { Ksp::Preonly } else { Ksp::Cg });
     if ksp == Ksp::Preonly && !pc.solves() {
         let message = format!(
-            "E0605: ksp = \"{ksp}\" needs a direct solver, and pc = \"{pc}\" is iterative. Use pc = \"cholesky\", \
-             \"lu\" or \"redundant\"."
+            "E0605: ksp = \"{ksp}\" needs a direct solver, but pc = \"{pc}\" is an iterative method. Use pc = \
+             \"cholesky\", \"lu\" or \"redundant\"."
         );
         linear.error("ksp", message, report);
         return None;

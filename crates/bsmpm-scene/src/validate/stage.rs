@@ -27,7 +27,7 @@ pub(super) fn read_all(
     for (number, record) in root.records("body").iter().enumerate() {
         let name = &bodies[number].name;
         if let Some(first) = bodies[..number].iter().position(|body| name.is_some() && body.name == *name) {
-            let message = format!("E0610: body.{first} has the same name. Rename one of them.");
+            let message = format!("E0610: body.{first} has the same name as this body. Rename one of the two bodies.");
             record.error("name", message, report);
         }
     }
@@ -60,7 +60,15 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
     for (record, acting) in all {
         let Some(name) = record.text("name") else { continue };
         if let Some((.., first)) = found.iter().find(|(other, ..)| *other == name) {
-            record.error("name", format!("E0610: {} has the same name. Rename one of them.", first.path), report);
+            record.error(
+                "name",
+                format!(
+                    "E0610: {} has the same name, so a stage could not tell which of the two is \
+                meant. Rename one of the two.",
+                    first.path
+                ),
+                report,
+            );
         }
         found.push((name, acting, record));
     }
@@ -96,8 +104,8 @@ fn stage(
     let strength_reduction = record.number("strength_reduction");
     let is_still = is_still && strength_reduction.is_none() && !record.gives("strength_reduction");
     if is_still && faces.is_empty() && materials.is_empty() && !resets_displacements {
-        let message = "E0611: the stage changes nothing. Add `add`, `remove`, `activate`, `deactivate`, `boundary`, \
-                       `materials`, `strength_reduction` or `reset_displacements`.";
+        let message = "E0611: the stage changes nothing. Give it one of `add`, `remove`, `activate`, `deactivate`, \
+                       `boundary`, `materials`, `strength_reduction` or `reset_displacements`.";
         report.error(record.origin, &record.path, message);
     }
     let name = record.text("name").map(str::to_owned);
@@ -134,7 +142,8 @@ fn named<T: Copy>(
         let found = all.next().map(|(_, what)| (name.clone(), *what));
         if !bodies && all.next().is_some() {
             let message = format!(
-                "E0610: several loads, motions or rigid bodies have the name `{}`. Rename all but one of them.",
+                "E0610: several loads, motions or rigid bodies have the name `{}`, so the stage cannot tell which one \
+                 is meant. Rename all but one.",
                 shortened(name)
             );
             record.error(key, message, report);
@@ -158,23 +167,23 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
     for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
         let (support, contact) = (super::support(boundary, side)?, super::contact(boundary, side, factor, report)?);
         if support == Support::FreeField {
-            let message = "E0614: a free-field boundary must exist from the start. Set it in [boundary], and remove \
-                           it from the stage.";
+            let message = "E0614: a stage cannot create a free-field boundary, which must exist from the start. Move \
+                           this side from the stage to [boundary].";
             boundary.error(side.word(), message, report);
         }
         let is_wet = root.gives("water") || root.named("material").iter().any(|(_, of)| of.gives("drainage"));
         let is_solid = root.word("geometry") == Some(Geometry::Solid);
         if support == Support::Absorbing && (side != Side::Bottom || is_wet || is_solid) {
-            let message = "E0614: a stage can make only the bottom absorbing, and only in 2-D without water. Set it \
-                           in [boundary], with [initial].";
+            let message = "E0614: a stage can make only the bottom absorbing, and only in 2-D without water. Move \
+                           this side from the stage to [boundary], and add [initial].";
             boundary.error(side.word(), message, report);
         }
         let moves = |motion: &Record| motion.word::<Side>("face") == Some(side);
         if let Some(motion) = root.records("prescribed").iter().find(|motion| support != Support::Free && moves(motion))
         {
             let message = format!(
-                "E0615: {} already moves this boundary, so the stage cannot support it. Remove the boundary from the \
-                 stage.",
+                "E0615: {} already prescribes the motion of this boundary, so the stage cannot support the boundary. \
+                 Remove this side from the stage.",
                 motion.path
             );
             boundary.error(side.word(), message, report);
@@ -201,7 +210,8 @@ fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<
         let (from, to) = (number("from"), number("to"));
         let (from, to) = (from?, to?);
         if found.iter().any(|(other, _)| *other == from) {
-            let message = "E0617: this stage already replaces this material. Remove one of the two replacements.";
+            let message = "E0617: the stage already replaces this material by another one. Remove one of the two \
+                entries of `materials`.";
             pair.error("from", message, report);
         }
         found.push((from, to));
@@ -215,13 +225,17 @@ fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &m
     for (stage, record) in stages.iter().zip(root.records("stage")) {
         let [releases, applies] = stage.switches(*what);
         if releases && applies {
-            let message =
-                format!("E0618: the stage both activates and deactivates `{name}`. Remove it from one of the lists.");
+            let message = format!(
+                "E0618: the stage both activates and deactivates `{name}`. Remove `{name}` from one of the \
+                    two lists."
+            );
             record.error("activate", message, report);
         } else if (releases && acts == Some(false)) || (applies && acts == Some(true)) {
             let (key, state) = if releases { ("deactivate", "inactive") } else { ("activate", "active") };
-            let message =
-                format!("E0619: `{name}` is already {state} when this stage begins. Remove it from this list.");
+            let message = format!(
+                "E0619: `{name}` is already {state} when this stage begins. Remove `{name}` from `{key}` of \
+                    this stage."
+            );
             record.error(key, message, report);
         }
         acts = if releases || applies { Some(applies) } else { acts };
@@ -237,8 +251,8 @@ fn timed(at: f64, (before, end, dt): (f64, f64, f64), record: &Record, report: &
         record.error("at", message, report);
     } else if at - before <= APART * dt {
         let message = format!(
-            "E0621: the stage begins at t = {at}, not after the start or the previous stage (t = {before}). Increase \
-             `at`, or sort the stages."
+            "E0621: the stage must begin after t = {before} (start of the run or of the previous stage), but begins \
+             at t = {at}. Increase `at`, or sort the stages by time."
         );
         record.error("at", message, report);
     }
@@ -275,7 +289,8 @@ fn once(body: usize, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
         && removed <= added
     {
         let message = format!(
-            "E0622: body.{body} does not exist before stage.{added}, which adds it. Remove it in a later stage."
+            "E0622: body.{body} does not exist yet, because stage.{added} adds it. Remove body.{body} in a stage \
+             after stage.{added}."
         );
         records[removed].error("remove", message, report);
     }
@@ -289,13 +304,14 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     }
     let records = root.records("stage");
     if case.bodies_at_start().next().is_none() {
-        let message =
-            "E0623: no body exists at the start, because stages add all bodies. Take one out of the `add` lists.";
+        let message = "E0623: no body exists at the start, because stages add all bodies. Take at least one body out of the \
+             `add` lists of the stages.";
         root.error("body", message, report);
     }
     for (stage, record) in case.stages.iter().zip(records) {
         if !(0..case.bodies.len()).any(|body| case.is_there(body, stage.at)) {
-            let message = "E0623: no body is left after this stage. Keep at least one body.";
+            let message = "E0623: no body is left after this stage, so there is nothing to compute. Take at least one \
+                body out of `remove`.";
             record.error("remove", message, report);
         }
         for (name, what) in &stage.apply {
@@ -306,8 +322,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             };
             if has_moved {
                 let message = format!(
-                    "E0624: the path of `{name}` begins before the stage activates it, so it would act away from its \
-                     soil. Begin the path at t = {}.",
+                    "E0624: `{name}` moves before this stage activates it, and would then jump to another position. \
+                     Begin the path of `{name}` at t = {}.",
                     stage.at
                 );
                 record.error("activate", message, report);
@@ -325,8 +341,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             let named = &case.materials[case.bodies[body].material];
             if !named.material.is_linear() {
                 let message = format!(
-                    "E0625: body.{body} is added without stress, but the stiffness of material.{} follows from its \
-                     stress. Use a model with constant stiffness.",
+                    "E0625: the stage adds body.{body} without stress, but the stiffness of material.{} depends on \
+                     the stress. Use a material with constant stiffness.",
                     named.name
                 );
                 record.error("add", message, report);
@@ -351,8 +367,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         };
         if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !held(place)) {
             let message = format!(
-                "E0626: a stage adds or removes the body at {:?}, where one body must stay {duration}. Move this \
-                 place, or keep that body.",
+                "E0626: this load, footing or drain needs the body at {:?} m {duration}, but a stage adds or removes \
+                 that body. Use another position, or keep the body.",
                 &at[..case.grid.dims()]
             );
             record.error(key, message, report);
@@ -364,21 +380,25 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
 fn exchanged(case: &Case, (from, to): (usize, usize), pair: &Record, report: &mut Report<'_>) {
     let [from, to] = [from, to].map(|number| (number, &case.materials[number]));
     if !case.bodies.iter().any(|body| body.material == from.0) {
-        let message = format!("E0613: no body consists of material.{}. Name a material of a body.", from.1.name);
+        let message = format!(
+            "E0613: no body consists of material.{}, so the stage has nothing to replace. Name the \
+            material of a body.",
+            from.1.name
+        );
         pair.error("from", message, report);
     }
     if from.1.density != to.1.density {
         let message = format!(
-            "E0629: material.{} and material.{} differ in density, and the ground keeps its mass. Give both the same \
-             `unit_weight`.",
+            "E0629: material.{} and material.{} differ in density, but a change of material cannot change the mass of \
+             the soil. Give both the same `unit_weight`.",
             from.1.name, to.1.name
         );
         pair.error("to", message, report);
     }
     if !to.1.material.is_linear() {
         let message = format!(
-            "E0625: the stiffness of material.{} depends on its stress history, which the replaced material does not \
-             have. Use a model with constant stiffness.",
+            "E0625: a stage cannot change to material.{}: its stiffness needs a stress history, which the earlier \
+             material did not record. Change to a material with constant stiffness.",
             to.1.name
         );
         pair.error("to", message, report);

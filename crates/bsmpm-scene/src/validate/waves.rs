@@ -56,8 +56,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     };
     let wave = if input.axis.is_some() { "compression" } else { "shear" };
     report.warn(format!(
-        "W0680: {}: {wave} waves of {:.3} Hz have {cells:.1} cells per wavelength (at least {fewest} needed): their \
-         speed is wrong by more than 2 %. {remedy}.",
+        "W0680: {}: {wave} waves of {:.3} Hz have {cells:.1} cells per wavelength (at least {fewest} needed), and \
+         travel more than 2 % too slowly. {remedy}.",
         input.name, input.frequency
     ));
 }

@@ -85,8 +85,10 @@ fn fits(option: &str, given: usize, runs: usize) -> Result<(), Error> {
     if given == 0 || given == runs {
         return Ok(());
     }
-    let reason =
-        format!("E0805: {option} is given {given} times for {runs} runs. Give it once for each run, or not at all.");
+    let reason = format!(
+        "E0805: {option} is given {given} times for {runs} runs. Give {option} once for each run, or not at \
+            all."
+    );
     Err(Error::Usage { reason })
 }
 
@@ -128,8 +130,8 @@ fn axis(
         let (name, unit) = (first.name, first.unit);
         let (here, there) = (records[0].directory.display(), record.directory.display());
         let reason = format!(
-            "E0804: `{name}` has the unit {unit} in {here}, but `{}` has {} in {there}. Choose another column, or give an axis \
-             label (--x-label, --y-label).",
+            "E0804: `{name}` has the unit {unit} in {here}, but `{}` has the unit {} in {there}. Both share an axis. \
+             Choose another column, or give an axis label (--x-label, --y-label).",
             other.name, other.unit
         );
         return Err(Error::Usage { reason });

@@ -39,7 +39,7 @@ pub(super) fn read(directory: &Path) -> Result<Actual, Error> {
     let manifest = present(Manifest::read(directory))?.ok_or_else(|| Error::no_run(directory))?;
     if manifest.status == Status::Running {
         let reason = format!(
-            "E0857: the run in {} has not ended, so there is nothing to compare with. Wait until it ends.",
+            "E0857: the run in {} has not ended, so there is nothing to compare with. Wait until this run ends.",
             directory.display()
         );
         return Err(Error::Usage { reason });

@@ -18,33 +18,33 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
     let reasons = [
         (
             case.analysis.regime == Regime::Dynamic,
-            "E0810: strength reduction searches for static equilibrium, but the analysis is dynamic. Set \
+            "E0810: the search of `bsmpm fos` needs a static equilibrium, but the analysis is dynamic. Set \
              `analysis.type = \"quasi-static\"`.",
         ),
         (
             any(Material::hardens),
-            "E0811: a material hardens, so the factor would depend on the displacement at which it is read. Set \
-             `hardening = 0`, or reduce the residual strength to the peak.",
+            "E0811: a material hardens (residual strength above peak), so the factor of safety depends on the \
+             displacement. Set `hardening = 0`, or a residual strength not above the peak.",
         ),
         (
             any(|material| !material.is_linear()),
-            "E0812: the strength of Cam-clay depends on its stress history, which trials do not repeat. Use \
-             \"tresca\" (undrained strength) or \"mohr-coulomb\" (critical state).",
+            "E0812: the strength of Cam-clay depends on its stress history, which the trials of the search do not \
+             have. Use \"tresca\" (undrained strength) or \"mohr-coulomb\" (critical state).",
         ),
         (
             any(|material| material.softens() && material.over(1.0).is_some()),
-            "E0813: a strength depends on the shear rate, but trials have no physical time. Remove \
+            "E0813: the strength of a material depends on the shear rate, but the trials are static. Remove \
              `rate_parameter` and `reference_rate`, and give the strength at the relevant rate.",
         ),
         (
             until.is_none() && !case.stages.is_empty(),
-            "E0814: the case has stages, and each stage has its own factor of safety. Choose one by `--stage \
-             NAME`, or the last by `--stage end`.",
+            "E0814: the case has stages, and each stage has its own factor of safety. Choose a stage with `--stage \
+             NAME`, or the last one with `--stage end`.",
         ),
         (
             case.stages.iter().any(|stage| stage.strength_reduction.is_some()),
-            "E0815: a stage of the case reduces the strength, as the search itself does. Remove its \
-             `strength_reduction`.",
+            "E0815: a stage of the case has `strength_reduction`, but the search for the factor of safety would \
+             reduce the strength again. Remove this key from the stage.",
         ),
         (
             !has_strength,
@@ -53,33 +53,33 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (
             !is_loaded(case),
-            "E0817: no load acts at the end (weight, traction, point load, rigid body), so nothing can fail. Add \
-             [gravity] and a unit weight, or a load.",
+            "E0817: no load acts at the end of the analysis (weight, traction, point load, rigid body), so nothing \
+             can fail. Add [gravity] and `unit_weight`, or a load.",
         ),
         (
             has_amplitude,
-            "E0818: a load varies with its `amplitude`, so the factor would belong to its last value only. Give \
-             the load with `ramp`, or choose a stage by `--stage NAME`.",
+            "E0818: a load varies in time (`amplitude`), so the factor of safety would be that of its last value \
+             only. Use `ramp` instead, or choose a stage with `--stage NAME`.",
         ),
         (
             never_full,
-            "E0819: a `ramp` is longer than the analysis, so the load never acts in full. Reduce `ramp`, or increase \
-             `analysis.end`.",
+            "E0819: the `ramp` of a load is longer than the analysis, so this load never acts in full. Reduce `ramp`, \
+             or increase `analysis.end`.",
         ),
         (
             until.is_none() && case.water.as_ref().is_some_and(|water| water.table.moves()),
-            "E0820: the water table moves, so the factor would belong to an arbitrary level. Give `water.level`, \
-             or choose a stage by `--stage NAME`, at whose end the level stays.",
+            "E0820: the water table moves, so it is not clear for which level the factor of safety is wanted. Give a \
+             constant `water.level`, or choose the end of a stage with `--stage NAME`.",
         ),
         (
             until.is_none() && case.rigid.iter().any(Rigid::is_moved),
-            "E0821: a rigid body has a prescribed motion, which changes its support of the soil. Remove the \
-             motion, or choose a stage by `--stage NAME`, at whose end it stops.",
+            "E0821: a rigid body has a prescribed motion, so its support of the soil changes during the search. \
+             Remove the motion, or stop it at the end of a stage with `--stage NAME`.",
         ),
         (
             until.is_none() && is_moved(case),
-            "E0822: a displacement is prescribed, so soil of any strength moves alike and never fails. Give a load \
-             instead, or choose a stage by `--stage NAME`, at whose end the motion stops.",
+            "E0822: a displacement is prescribed, which soil of any strength can follow, so no trial would fail. Give \
+             a load instead, or stop the motion at the end of a stage with `--stage NAME`.",
         ),
     ];
     let found = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason.to_owned());
@@ -107,8 +107,8 @@ fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {
     let all = [("tolerance", case.solver.tolerance), ("force_tolerance", case.solver.force_tolerance)];
     all.into_iter().filter(|(_, value)| *value > LOOSEST).map(|(key, value)| {
         format!(
-            "E0823: solver.{key} = {value:e} is too loose (limit {LOOSEST:e}), so the factor may be too high. Set \
-             it to {LOOSEST:e} or less."
+            "E0823: solver.{key} = {value:e} is too large (limit: {LOOSEST:e}), so the factor of safety may be too \
+             high. Set solver.{key} = {LOOSEST:e} or less."
         )
     })
 }

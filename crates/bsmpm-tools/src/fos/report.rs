@@ -262,8 +262,8 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
     let [x, y, _] = trial.farthest;
     (trial.largest_displacement > DOUBLED * trial.displacement).then(|| {
         format!(
-            "W0801: in the trial {} a few material points near ({x:.2}, {y:.2}) m moved {:.1} times as far as the \
-             soil around. They are ignored. Check in ParaView that they are no failure.",
+            "W0801: in trial {} a few material points near ({x:.2}, {y:.2}) m moved {:.1} times as far as the soil \
+             around them. The search ignores these points. Check in ParaView that no soil fails there.",
             trial.factor,
             trial.largest_displacement / trial.displacement
         )
@@ -274,8 +274,8 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
 fn untrusted(trial: &FosTrial) -> Option<String> {
     (!trial.failed_indicators.is_empty()).then(|| {
         format!(
-            "W0802: the last stable trial ({}) has indicators beyond their limits: {}. The result may be wrong by \
-             10 % or more. Follow the advice in its log.",
+            "W0802: quality indicators of the last stable trial ({}) are beyond their limits: {}. The result may be \
+             wrong by 10 % or more. Follow the advice in the log of this trial.",
             trial.factor,
             trial.failed_indicators.join(", ")
         )
@@ -288,8 +288,8 @@ fn pulled_sides(mechanism: &Mechanism, sought: Sought) -> Option<String> {
     let sides: Vec<String> = mechanism.pulled.iter().map(side).collect();
     (!sides.is_empty()).then(|| {
         format!(
-            "W0803: the mechanism reaches a side of the grid that is in tension: {}. The {} may be too high. Move \
-             this side away, or use \"contact\" there.",
+            "W0803: the failure mechanism reaches a side of the grid that holds the soil by tension: {}. The {} may \
+             be too high. Move this side away, or set it to \"contact\".",
             sides.join(", "),
             sought.name()
         )
@@ -304,12 +304,12 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
         let value = subject.sought.value();
         let last = rows.last().map_or(0.0, |row| row.trial.factor);
         notes.push(format!(
-            "W0804: no trial up to the {value} {last} fails, so only a lower bound is known. Increase --to."
+            "W0804: no trial fails up to the largest {value} ({last}), so only a lower bound is known. Increase --to."
         ));
     } else if kink.is_none() && curve.has_branch() {
         notes.push(
-            "W0805: the displacements after failure form no straight branch, so the band is that of the first \
-             failed trial. Use more load steps for a sharper result."
+            "W0805: the displacements after failure form no straight line, so the result is only a range up to the \
+             first failed trial. Increase `analysis.steps` for a sharper result."
                 .to_owned(),
         );
     }
@@ -317,22 +317,22 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
     if !isolated.is_empty() {
         let factors: Vec<String> = isolated.iter().map(f64::to_string).collect();
         notes.push(format!(
-            "W0806: no equilibrium was found at {}, although weaker soil is stable. These trials are ignored. Use \
-             more load steps if they are many.",
+            "W0806: no equilibrium was found in the trial(s) {}, although trials closer to failure are stable. The \
+             search ignores these trials. If there are several, increase `analysis.steps`.",
             factors.join(", ")
         ));
     }
     let first = coarse.first_failed.and_then(|factor| rows.iter().find(|row| row.trial.factor == factor));
     if let Some(row) = first.filter(|row| row.verdict == Verdict::NoEquilibrium && row.growth <= DOUBLED) {
         notes.push(format!(
-            "W0807: the first failed trial ({}) stopped at {:.2} times the elastic displacement, so the solver may \
-             have failed, not the soil. Use more load steps.",
+            "W0807: the first failed trial ({}) stopped at only {:.2} times the elastic displacement, so perhaps the \
+             solver failed, not the soil. Increase `analysis.steps`.",
             row.trial.factor, row.growth
         ));
         if !subject.free_bodies.is_empty() {
             notes.push(format!(
-                "W0808: the soil hardly moved in the first failed trial, so a free rigid body may have failed: {}. \
-                 Look at the trial, or use a [[traction]] instead.",
+                "W0808: the soil hardly moved in the first failed trial, so perhaps a free rigid body failed, not the \
+                 soil: {}. Look at the trial, or replace the body by a [[traction]].",
                 subject.free_bodies.join(", ")
             ));
         }

@@ -104,21 +104,21 @@ impl Sought {
         let Self::SeismicCoefficient(pushed) = self else { return None };
         let Some(gravity) = &case.gravity else {
             let reason =
-                "E0824: the seismic coefficient is a fraction of gravity, and the case has none. Add [gravity].";
+                "E0824: the seismic coefficient is a fraction of gravity, and the case has no gravity. Add [gravity].";
             return Some(reason.to_owned());
         };
         let dims = case.grid.dims();
         let is_straight = gravity.acceleration[..dims - 1].iter().all(|part| *part == 0.0);
         if !is_straight || gravity.acceleration[dims - 1] >= 0.0 {
-            let reason = "E0824: gravity.acceleration is not vertically downwards, but --seismic adds the \
-                          horizontal part. Give the vertical component only.";
+            let reason = "E0824: gravity.acceleration must act vertically downwards, because --seismic adds the \
+                          horizontal component. Give a negative vertical component and zeros otherwise.";
             return Some(reason.to_owned());
         }
         if case.geometry == Geometry::Axisymmetric || pushed.direction(case.geometry).is_none() {
             let side = pushed.side();
             return Some(format!(
-                "E0825: the ground cannot be pushed to the {side} in this geometry. Use left or right in plane \
-                 strain, in 3-D also front or back."
+                "E0825: --seismic {side} is not possible in this geometry. Use `left` or `right` in plane strain, and \
+                 also `front` or `back` in 3-D."
             ));
         }
         None

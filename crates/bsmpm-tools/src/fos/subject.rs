@@ -27,8 +27,8 @@ const SMALL: f64 = 2e-3;
 /// Stiffening by less is none.
 const UNCHANGED: f64 = 1.01;
 /// What the factor of strength that falls with strain is.
-const SOFTENS: &str = "W0809: a material softens, so the factor depends on the size of the cells and on the \
-                       stiffness of the soil. Compare two sizes of cells.";
+const SOFTENS: &str = "W0809: a material softens, so the result depends on the size of the cells and on the stiffness \
+                       of the soil. Repeat the search with other cells, and compare.";
 /// The largest displacement of all points, as a case may record it.
 const QUANTITY: &str = "max-displacement";
 
@@ -126,8 +126,8 @@ impl Subject {
         if let Some(set) = set.iter().map(|set| set.trim_start()).find(|set| set.starts_with("strength_reduction")) {
             let key = set.split('=').next().unwrap_or(set).trim_end();
             let reason = format!(
-                "E0830: --set {key} conflicts with the search, which sets the strength reduction. Remove it; for a \
-                 stage use --stage and --undrained."
+                "E0830: --set {key} conflicts with the search, which sets the strength reduction itself. Remove this \
+                 --set. For a stage, use --stage and --undrained."
             );
             return Err(Error::Usage { reason });
         }
@@ -318,8 +318,8 @@ fn counted(case: &Case, region: &[f64]) -> Result<CountedPoints, Error> {
     let (lower, upper) = region.split_at(region.len() / 2);
     if region.len() != 2 * dims || lower.iter().zip(upper).any(|(low, high)| low >= high) {
         let reason = format!(
-            "E0832: --region is not a box. Give {dims} lower and then {dims} larger upper coordinates, separated \
-             by commas."
+            "E0832: --region does not describe a box. Give the {dims} lower coordinates, then the {dims} upper \
+             coordinates in m, separated by commas."
         );
         return Err(Error::Usage { reason });
     }

@@ -159,8 +159,8 @@ impl Trials<'_> {
         if [RunState::NoConvergence, RunState::Left].contains(&outcome.state) {
             let at = outcome.manifest.as_ref().and_then(|manifest| manifest.failure.as_ref()).map_or(0.0, |it| it.time);
             let reason = format!(
-                "E0829: with its full strength the case fails at t = {at}, before the end of stage \"{name}\" (t = \
-                 {until}). Make it stable until then; see {}: {}",
+                "E0829: with its full strength the soil fails at t = {at}, before the end of stage \"{name}\" (t = \
+                 {until}). Choose an earlier stage, or correct the case. See {}: {}",
                 directory.display(),
                 outcome.reason
             );

@@ -83,8 +83,8 @@ impl LimitLoadReport {
             let found = loads(outcome);
             if found.is_empty() {
                 let reason = format!(
-                    "E0855: the record of run `{}` has no limit load. An earlier version made it. Delete its directory, and start \
-                     again.",
+                    "E0855: the saved record of run `{0}` is from an earlier version and lacks the limit load. Delete \
+                     the directory `runs/{0}.out`, and repeat this command.",
                     order.name
                 );
                 return Err(Error::Missing { reason });
@@ -201,16 +201,16 @@ impl GridLoad {
         let changed = 100.0 * change;
         let warning = match (*load <= 0.0, *change > 0.0) {
             (true, _) => format!(
-                "W0850: `{name}` meets no resistance on cells of {cell} m, so there is no limit load. Check that it touches the \
-                 ground and moves towards it."
+                "W0850: on cells of {cell} m the soil does not resist `{name}`, so there is no limit load. Check that \
+                 `{name}` touches the soil and moves towards it."
             ),
             (_, true) => format!(
-                "W0851: the load of `{name}` still rises on cells of {cell} m, by {changed:.1} % over the last quarter of the \
-                 displacement (at most 1 %). Increase the prescribed displacement."
+                "W0851: on cells of {cell} m the load on `{name}` still rises by {changed:.1} % over the last quarter \
+                 of the displacement (limit: 1 %). Increase the prescribed displacement."
             ),
             _ => format!(
-                "W0852: the load of `{name}` falls on cells of {cell} m, by {:.1} % over the last quarter of the displacement (at \
-                 most 1 %). Increase analysis.steps.",
+                "W0852: on cells of {cell} m the load on `{name}` falls by {:.1} % over the last quarter of the \
+                 displacement (limit: 1 %). Increase `analysis.steps`.",
                 -changed
             ),
         };

@@ -30,7 +30,8 @@ pub(super) fn draw(
     let values: Option<Vec<_>> = frames.iter().map(|frame| field.values(frame)).collect();
     let missing = || Error::Missing {
         reason: format!(
-            "E0847: the frames of {} have no field `{}`. Choose another --field, or add it to output.fields.",
+            "E0847: the frames of {} have no field `{}`. Choose another --field, or add this field to output.fields \
+             and run the case again.",
             record.directory.display(),
             field.field()
         ),

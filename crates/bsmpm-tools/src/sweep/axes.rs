@@ -17,7 +17,10 @@ impl SweepAxis {
     /// `KEY=V1,V2,...`; a comma within brackets, braces or quotes belongs to a value.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = |why: &str| {
-            Err(format!("E0838: --vary {text} is invalid: {why}. Give a key and its values as KEY=V1,V2,... once."))
+            Err(format!(
+                "E0838: --vary {text} is invalid: {why}. Give a key and its values as KEY=V1,V2,..., each \
+                value once."
+            ))
         };
         let Some((key, values)) = text.split_once('=') else { return wrong("`=` is missing") };
         let (key, values) = (key.trim().to_owned(), split(values));
@@ -58,14 +61,15 @@ pub(crate) fn split(text: &str) -> Vec<String> {
 pub(super) fn settings(axes: &[SweepAxis], one_at_a_time: bool) -> Result<Vec<SweepSetting>, String> {
     if let Some(twice) = (1..axes.len()).find(|&index| axes[..index].iter().any(|axis| axis.key == axes[index].key)) {
         return Err(format!(
-            "E0838: --vary is given twice for the key {}. Give all values of a key as KEY=V1,V2,... once.",
+            "E0838: --vary is given twice for the key {}. Give all values of this key in one option, as KEY=V1,V2,...",
             axes[twice].key
         ));
     }
     let count = axes.iter().fold(1_usize, |count, axis| count.saturating_mul(axis.values.len()));
     if count > MOST && !one_at_a_time {
         return Err(format!(
-            "E0839: the sweep has {count} combinations, more than {MOST}. Reduce the values, or use --one-at-a-time."
+            "E0839: the sweep has {count} combinations of values (limit: {MOST}). Give fewer values, or use \
+             --one-at-a-time."
         ));
     }
     let own: SweepSetting = vec![None; axes.len()];

@@ -43,12 +43,13 @@ impl SweepArguments {
         if quantities.iter().any(SweepQuantity::is_factor) {
             return match (quantities, self.options.max_wall) {
                 ([only], None) if only.name == FACTOR => Ok(()),
-                (_, Some(_)) => {
-                    usage(format!("E0837: --max-wall cannot be combined with --quantity {FACTOR}. Remove one of them."))
-                }
+                (_, Some(_)) => usage(format!(
+                    "E0837: --max-wall cannot be combined with --quantity {FACTOR}. Remove one of the \
+                        two options."
+                )),
                 _ => usage(format!(
-                    "E0837: --quantity {FACTOR} must be the only quantity, without a time, because it replaces the \
-                     runs. Use a separate sweep."
+                    "E0837: --quantity {FACTOR} replaces each run by a search, so it must be the only quantity, \
+                     without a time. Use a separate sweep for other quantities."
                 )),
             };
         }
@@ -57,7 +58,7 @@ impl SweepArguments {
         let parts = quantities.iter().flat_map(|quantity| &quantity.parts);
         match parts.into_iter().find(|part| !columns.contains(&part.column)) {
             Some(part) => usage(format!(
-                "E0836: no [[history]] of the case records `{}`. Add one, or choose from: {}, {FACTOR}.",
+                "E0836: no [[history]] of the case records `{}`. Add a [[history]], or choose one of: {}, {FACTOR}.",
                 part.column,
                 columns.join(", ")
             )),

@@ -64,7 +64,8 @@ impl Reference {
             }
             Self::Numbers(numbers) => Err(Error::Usage {
                 reason: format!(
-                    "E0840: --reference has {} number(s) for {parts} quantities. Give one finite number for each.",
+                    "E0840: --reference has {} number(s) for {parts} quantities. Give one finite number for each \
+                     quantity.",
                     numbers.len()
                 ),
             }),

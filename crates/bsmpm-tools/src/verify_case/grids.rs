@@ -49,8 +49,8 @@ impl Grids {
         let ratios = [sizes[1] / sizes[0], sizes[2] / sizes[1]];
         if ratios.iter().any(|ratio| !(LEAST..=MOST).contains(ratio)) {
             let reason = format!(
-                "E0858: each of the cells {sizes:?} m must be {LEAST} to {MOST} times as large as the next finer one. Choose \
-                 others with --cells or --ratio."
+                "E0858: the sizes of cells {sizes:?} m are too close or too far apart: each must be {LEAST} to {MOST} \
+                 times the next smaller one. Change --cells or --ratio."
             );
             return Err(Error::Usage { reason });
         }
@@ -70,13 +70,15 @@ impl VerifyArguments {
                 Ok(cells.iter().map(of).collect())
             } else {
                 usage(format!(
-                    "E0859: --cells gives {count} sizes, but three are needed. Give three, such as 0.4,0.2,0.1."
+                    "E0859: --cells gives {count} sizes, but three are needed. Give three sizes, such as 0.4,0.2,0.1."
                 ))
             };
         }
         let [x, y] = &own.grid.axes[..] else {
             return usage(
-                "E0860: in 3-D the three grids do not follow from a ratio. Give their cells with --cells.".to_owned(),
+                "E0860: in 3-D the sizes of the cells cannot be chosen by a ratio. Give the three sizes with --cells, \
+                 such as 0.4,0.3,0.2."
+                    .to_owned(),
             );
         };
         let graded = is_graded(own);
@@ -88,8 +90,8 @@ impl VerifyArguments {
         }
         if graded && self.ratio.fract() != 0.0 {
             return usage(format!(
-                "E0862: --ratio {} is not a whole number, and the cells of this grid have several sizes. Use a whole number, or equal \
-                 cells with --cells.",
+                "E0862: the grid has cells of several sizes, so --ratio must be a whole number, but is {}. Use a \
+                 whole number, or give sizes of equal cells with --cells.",
                 self.ratio
             ));
         }

@@ -334,7 +334,7 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
     let strip = "footing={ from = [0.0, 10.0], to = [2.0, 10.0], displacement = [0.0, -0.1] }";
     let wall = "rigid=[{ name = \"wall\", polygon = [[34, 0], [36, 0], [36, 4]], displacement = [-0.1, 0.0] }]";
     for (set, reported) in [
-        (vec!["solver.tolerance=2e-3"], "E0823: solver.tolerance = 2e-3 is too loose"),
+        (vec!["solver.tolerance=2e-3"], "E0823: solver.tolerance = 2e-3 is too large"),
         (vec!["solver.force_tolerance=1e-2"], "solver.force_tolerance = 1e-2 is too loose"),
         (vec!["analysis.type=dynamic"], "E0810"),
         (vec!["material.soil={ model = \"elastic\", young = 1e8, poisson = 0.3, density = 2e3 }"], "E0816"),
@@ -451,6 +451,10 @@ fn a_rigid_body_that_slips_is_no_failure_of_the_ground() {
     let bench = Bench::new(SLOPE, "kink=1.373 loose=1.1");
     let output = bench.fos(&[]);
     let said = text(&output.stderr);
-    assert!(output.status.code() == Some(80) && said.contains("E0826: rigid body `block` slips"), "{said}");
+    assert!(
+        output.status.code() == Some(80)
+            && said.contains("E0826: rigid body `block`, which only friction supports, slips"),
+        "{said}"
+    );
     assert!(!bench.path("slope.fos/fos.json").exists());
 }

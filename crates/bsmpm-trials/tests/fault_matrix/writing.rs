@@ -101,7 +101,7 @@ pub fn full_disk(ground: &Ground, count: usize) -> Tried {
         let room = frame + (parts * checkpoint as f64) as u64 + (160 << 10);
         let disk = Disk::new(trial.directory(), room).expect("a disk");
         let output = trial.start(&few_frames, &[]).end().expect(74);
-        has_stopped(&trial, "no space for", &output);
+        has_stopped(&trial, "was not written: the file needs", &output);
         assert_eq!(entries(&trial.checkpoint("")).len(), 4, "two checkpoints");
         disk.grow();
         trial.start(&few_frames, &[]).end().expect(0);
@@ -164,7 +164,7 @@ pub fn small_files(ground: &Ground, count: usize) -> Tried {
         let mut command = Command::new("bash");
         command.args(["-c", &line]).current_dir(trial.scratch.path(""));
         let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(60)).end().expect(74);
-        has_stopped(&trial, "no space for", &output);
+        has_stopped(&trial, "was not written: the file needs", &output);
         trial.becomes(&whole);
         0.0
     });

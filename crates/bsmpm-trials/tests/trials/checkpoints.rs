@@ -168,8 +168,8 @@ fn on_a_full_disk_nothing_is_written_and_the_older_checkpoint_stays() {
     run(2, &["write", directory, MANY, "1"]).expect(0);
     for _ in 0..3 {
         let output = run(2, &["write", directory, MANY, "2"]).expect(74);
-        output.says_once("no space for");
-        assert!(output.said().contains("bytes, the disk has"), "{output:#?}");
+        output.says_once("was not written: the file needs");
+        assert!(output.said().contains("bytes, but the disk has"), "{output:#?}");
         assert_eq!(entries(&disk.0.join("checkpoint")), ["step_000000001.h5", "step_000000001.json"]);
     }
     run(2, &["newest", disk.0.join("checkpoint").to_str().unwrap(), MANY]).expect(0).says_once("good: step 1");
@@ -184,7 +184,7 @@ fn where_files_must_not_grow_nothing_is_written_and_the_older_checkpoint_stays()
     let mut alone = Command::new("bash");
     alone.args(["-c", &limited]);
     let output = processes::run(alone, &[], true, Duration::from_secs(60)).expect(74);
-    output.says_once("no space for");
+    output.says_once("was not written: the file needs");
     assert_eq!(entries(&scratch.path("checkpoint")), ["step_000000001.h5", "step_000000001.json"]);
     run(2, &["newest", &at(&scratch, "checkpoint"), FEW]).expect(0).says_once("good: step 1");
 }

@@ -143,7 +143,10 @@ fn a_failure_names_both_measures_their_tolerances_and_what_to_try() {
     let failure = std::fs::read(scratch.path("case.out/failure.json")).unwrap();
     let failure: bsmpm_io::failure::FailureReport = serde_json::from_slice(&failure).unwrap();
     let reason = failure.attempts.last().unwrap();
-    assert!(reason.starts_with("E0747: no convergence after 4 iterations (their limit): energy residual"), "{reason}");
+    assert!(
+        reason.starts_with("E0747: no convergence after 4 iterations (the limit). Final residuals: energy residual"),
+        "{reason}"
+    );
     assert!(reason.contains("tolerance 1e-6), force residual") && reason.contains("tolerance 1e-3)"), "{reason}");
     let tolerances = failure.tolerances.unwrap();
     assert_eq!((tolerances.energy, tolerances.force), (Some(1e-6), Some(1e-3)));

@@ -264,7 +264,7 @@ fn a_point_that_creeps_at_the_surface_does_not_decide() {
     println!("{}", estimate(&found));
     assert!((estimate(&found) / 1.37 - 1.0).abs() < 0.01, "{found}");
     let notes = found["notes"].to_string();
-    assert!(notes.contains("W0801: in the trial "), "{notes}");
+    assert!(notes.contains("W0801: in trial "), "{notes}");
     let [low, high] = ["lower", "upper"].map(|key| found["mechanism"][key][0].as_f64().unwrap());
     assert!(4.0 < low && low < 12.0 && 28.0 < high && high < 33.0, "{}", found["mechanism"]);
 }

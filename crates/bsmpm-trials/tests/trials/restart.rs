@@ -260,7 +260,7 @@ fn a_run_goes_on_with_a_later_end_and_says_what_has_changed() {
     scratch.mpirun(2, &[&run[..], &["-q"]].concat()).expect(0);
     let later = format!("analysis.end={}", 1.5 * end);
     let output = scratch.mpirun(2, &[&run[..], &["--set", &later, "--restart", "auto"]].concat()).expect(0);
-    output.says_once("W0732: since the checkpoint, analysis.end was");
+    output.says_once("W0732: the case has changed since the checkpoint: analysis.end was");
     scratch.mpirun(2, &["case.toml", "-q", "-o", "whole", "--set", &later]).expect(0);
     let (part, whole) = (history(&scratch.path("part")), history(&scratch.path("whole")));
     assert_eq!(part.get("time").unwrap().last(), whole.get("time").unwrap().last());
@@ -298,7 +298,8 @@ fn a_table_that_was_changed_since_is_not_gone_on_with() {
     assert_eq!(std::fs::read(scratch.path("case.out/run.json")).unwrap(), manifest, "nothing was touched");
     std::fs::remove_file(&path).unwrap();
     let output = scratch.mpirun(2, &["case.toml", "--restart", "auto"]).expect(0);
-    output.says_once("W0738: the earlier steps of `history.csv` are missing. It begins with step 6");
+    output
+        .says_once("W0738: the file `history.csv` of the earlier steps is missing, so the new file begins with step 6");
     assert_eq!(history(&scratch.path("case.out")).get("step").unwrap()[0], 6.0);
 }
 

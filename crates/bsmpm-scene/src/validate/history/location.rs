@@ -54,7 +54,10 @@ pub(super) fn face(record: &Record, root: &Record, report: &mut Report<'_>) -> O
     let (side, geometry) = (record.word::<Side>("face")?, root.word::<Geometry>("geometry")?);
     let face = Face::of(side, geometry);
     if face.is_none() {
-        let message = format!("E0653: a {geometry} grid has no face \"{side}\". Name another face.");
+        let message = format!(
+            "E0653: the grid of a {geometry} case has no side \"{side}\". Use one of: \"left\", \
+            \"right\", \"bottom\", \"top\"."
+        );
         record.error("face", message, report);
     }
     face
@@ -85,7 +88,7 @@ pub(super) fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Repo
         let (low, high) = (&lower[..axes], &upper[..axes]);
         if (0..axes).any(|axis| lower[axis] >= upper[axis]) {
             let message = format!(
-                "E0651: the box is empty, because its upper corner {high:?} is not above its lower corner {low:?}. \
+                "E0651: the box is empty: along each axis `upper` = {high:?} must be larger than `lower` = {low:?}. \
                  Correct `upper` or `lower`."
             );
             record.error("upper", message, report);
@@ -93,7 +96,8 @@ pub(super) fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Repo
         let (start, end) = (grid.lower(), grid.upper());
         if (0..axes).any(|axis| upper[axis] <= start[axis] || lower[axis] >= end[axis]) {
             let message = format!(
-                "E0650: the box is outside the grid, which spans {:?} to {:?}. Move it into the grid.",
+                "E0650: the box lies outside the grid, which extends from {:?} m to {:?} m. Move the box into the \
+                 grid.",
                 &start[..axes],
                 &end[..axes]
             );

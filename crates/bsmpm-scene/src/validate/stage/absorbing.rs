@@ -18,22 +18,22 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
     if case.shakes_from() < stage.at {
         refuse(
             "at",
-            "E0627: with absorbing boundaries a stage that changes the ground must begin before the earthquake. Let \
-             [shaking] begin later.",
+            "E0627: with absorbing boundaries a stage that changes the ground must begin before the earthquake. \
+             Reduce `at`, or let [shaking] begin later.",
         );
     }
     if stage.strength_reduction.is_some() {
         refuse(
             "strength_reduction",
-            "E0627: a stage cannot reduce the strength next to absorbing boundaries, because failing ground moves. \
-             Make those boundaries \"fixed\".",
+            "E0627: a stage cannot reduce the strength in a case with absorbing boundaries, because these need ground \
+             at rest. Make the absorbing boundaries \"fixed\".",
         );
     }
     if case.is_ever(Support::Contact) || !case.rigid.is_empty() {
         refuse(
             "at",
-            "E0627: stages with absorbing boundaries are not available with boundaries in contact or rigid bodies. \
-             Make the absorbing boundaries \"fixed\".",
+            "E0627: stages are not available if a case has absorbing boundaries together with contact boundaries or \
+             rigid bodies. Make the absorbing boundaries \"fixed\".",
         );
     }
     let grows = |what: Acting| match what {
@@ -43,15 +43,15 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
     if case.still_grows(stage.at) || stage.apply.iter().any(|(_, what)| grows(*what)) {
         refuse(
             "at",
-            "E0627: with absorbing boundaries all loads must be constant when a stage begins. End their `ramp` or \
-             `amplitude` earlier, or use ramp = 0.",
+            "E0627: with absorbing boundaries all loads must be constant when a stage begins. End the `ramp` or \
+             `amplitude` of each load earlier, or use ramp = 0.",
         );
     }
     if stage.release.iter().any(|(_, what)| !matches!(what, Acting::Load(_))) {
         refuse(
             "deactivate",
-            "E0627: with absorbing boundaries a stage can deactivate loads only, no footing or prescribed motion. \
-             Make the boundaries \"fixed\".",
+            "E0627: with absorbing boundaries a stage can deactivate loads, but not a footing or prescribed motion. \
+             Make the absorbing boundaries \"fixed\".",
         );
     }
     for of in faces.iter().filter(|of| of.support == Support::FreeField) {
@@ -64,8 +64,8 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
             let bodies = if key == "add" { &stage.add } else { &stage.remove };
             if bodies.iter().any(is_in) {
                 let message = format!(
-                    "E0628: the body lies in the cells at the free-field boundary `{}`, which must not change. Keep \
-                     it one cell away.",
+                    "E0628: this body lies in the cells next to the free-field boundary `{}`, which a stage cannot \
+                     change. Keep the body one cell away from the boundary.",
                     of.face.side(case.geometry).word()
                 );
                 refuse(key, &message);
@@ -74,15 +74,15 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
         if !stage.materials.is_empty() {
             refuse(
                 "materials",
-                "E0628: a stage cannot change materials if a side is a free field, which keeps its own. Make the side \
-                 \"fixed\" or \"roller\".",
+                "E0628: a stage cannot change materials if a side is \"free-field\", because the free field keeps its \
+                 materials. Make the side \"fixed\" or \"roller\".",
             );
         }
         if stage.faces.iter().any(|of| of.face.axis == 0) {
             refuse(
                 "boundary",
-                "E0628: a stage cannot change the left or right boundary if a side is a free field. Change \"bottom\" \
-                 or \"top\" only.",
+                "E0628: a stage cannot change the left or right boundary if a side is \"free-field\". Change \
+                 \"bottom\" or \"top\" only.",
             );
         }
     }
