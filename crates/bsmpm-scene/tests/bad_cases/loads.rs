@@ -83,8 +83,8 @@ pub const LAYERS: &[Row] = &[
     row("at_y = 3, per_metre = 500", "per_metre = 500", "material.till.cohesion.at_y", "missing"),
     row("at_y = 3, per_metre", "y = 3, per_metre", "material.till.cohesion.y", "the key `y` does not exist"),
     row("per_metre = \"2 MPa/m\"", "per_metre = \"-7 MPa/m\"", "material.till.young", "E0303"),
-    row("value = \"1 kPa\", at_y = 3", "value = 0, at_y = 2", "material.till.cohesion", "is -250 at y = 2.5"),
-    row("value = 30, at_y", "value = 89.5, at_y", "material.till.friction_angle", "is 90.25 at y = 1.5"),
+    row("value = \"1 kPa\", at_y = 3", "value = 0, at_y = 2", "material.till.cohesion", "E0303 .. y = 2.5 m .. -250"),
+    row("value = 30, at_y", "value = 89.5, at_y", "material.till.friction_angle", "E0303 .. y = 1.5 m .. 90.25"),
     row("value = 30, at_y", "value = -0.4, at_y", "material.till.friction_angle", "is -0.15"),
     row("dilation_angle    = 0\n", "dilation_angle = 31\n", "material.till.dilation_angle", "E0308"),
     row(
@@ -267,7 +267,7 @@ pub const QUASI_STATIC: &[Row] = &[
     .down(2),
     row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "E0646").down(1),
     row("[output]", "[[history]]\nquantity = \"penetration\"\n[output]", "history.0.quantity", "E0646").down(1),
-    row("[output]", "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 1\n[output]", "initial", "no body has any")
+    row("[output]", "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 1\n[output]", "initial", "E0408")
         .down(2),
 ];
 

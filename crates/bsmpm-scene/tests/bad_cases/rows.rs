@@ -390,7 +390,7 @@ pub const QUASI_STATIC: &[Row] = &[
         "model   = \"elastic\"",
         "model = \"mu-i\"\nmu_s = 0.38\nmu_2 = 0.6\ninertial_number = 0.3\ngrain_diameter = 1e-3\ngrain_density = 2500",
         "material.soil.model",
-        "in dynamics only",
+        "E0319",
     ),
     row(
         "box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }\npoints_per_cell = 3",
