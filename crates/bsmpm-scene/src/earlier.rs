@@ -39,8 +39,9 @@ fn in_table(written: &mut DocumentTable, table: &'static Table, path: &str, repo
         {
             if is_given(key.name) {
                 let message = format!(
-                    "E0016: this is the earlier name of `{}`, which is given too. Delete one of them.",
-                    key.name
+                    "E0016: this key is the earlier name of `{now}`, and the case gives both. Delete this key or \
+                     `{now}`.",
+                    now = key.name
                 );
                 report.error(entry.origin, &path, message);
                 return false;

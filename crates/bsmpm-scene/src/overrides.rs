@@ -17,7 +17,11 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
     for (number, text) in overrides.iter().enumerate() {
         let origin = Origin::Override(number);
         let Some((key, value)) = text.split_once('=') else {
-            report.error(origin, "", "E0025: the override has no `=`. Write KEY=VALUE, such as grid.cell=0.5.");
+            report.error(
+                origin,
+                "",
+                "E0025: the argument of --set has no `=`. Write KEY=VALUE, such as grid.cell=0.5.",
+            );
             continue;
         };
         let parts: Vec<&str> = key.split('.').map(str::trim).collect();
@@ -25,8 +29,8 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
             report.error(
                 origin,
                 key.trim(),
-                "E0025: this is not the path of a key. Write names and numbers with points between them, such as \
-                 body.0.points_per_cell.",
+                "E0025: the text before `=` is not the path of a key. Write the names of the tables and the key with \
+                 points between them, such as body.0.points_per_cell.",
             );
             continue;
         }
@@ -44,7 +48,7 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
             Err(message) => report.error(
                 origin,
                 key.trim(),
-                format!("E0025: the value cannot be read: {message}. Check its brackets and quotes."),
+                format!("E0025: the value cannot be read: {message}. Check the brackets and quotes of the value."),
             ),
         }
     }
@@ -141,14 +145,15 @@ impl<'a> Setting<'a> {
                 }
                 let index: usize = part.parse().map_err(|_| {
                     format!(
-                        "E0026: `{}` is not the number of an item. The list has {length} items, numbered from 0.",
+                        "E0026: `{}` is not the number of an item of the list. Write the number of one of the \
+                         {length} items, counted from 0.",
                         shortened(part)
                     )
                 })?;
                 if index > length {
                     return Err(format!(
-                        "E0026: the list has no item {index}: it has {length} items, numbered from 0. Use {length} to \
-                         add one."
+                        "E0026: the list has no item {index}, because it has {length} items, counted from 0. Write \
+                         {length} to add an item."
                     ));
                 }
                 if index == length {
@@ -162,7 +167,8 @@ impl<'a> Setting<'a> {
                 self.in_value(&mut items[index], schema, depth + 1)
             }
             _ => Err(format!(
-                "E0026: `{}` cannot be set, because the value that should contain it is {shown}, not a table.",
+                "E0026: `{}` cannot be set, because the key before it in the path has the value {shown} and is not a \
+                 table. Correct the path.",
                 shortened(part)
             )),
         }

@@ -122,7 +122,9 @@ impl Choice {
     /// Of a key that depends on something that the case does not give.
     fn cannot_choose(&self, key: &str, basis: &str) -> String {
         let word = self.word;
-        format!("E0253: \"{word}\" cannot choose {key}, which depends on {basis}. Complete these, or give {key}.")
+        format!(
+            "E0253: the preset \"{word}\" cannot choose {key} from {basis}. Complete or correct these, or give {key}."
+        )
     }
 }
 
@@ -154,8 +156,8 @@ fn fill_accuracy(
     // Its errors are reported when the filled document is read.
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     if record.word("geometry") == Some(Geometry::Solid) {
-        let message =
-            "E0226: presets are not available in 3-D. Give the cells, points_per_cell, the steps and the tolerances.";
+        let message = "E0226: presets are not available in 3-D. Give grid.cell, points_per_cell, analysis.steps and \
+                       the tolerances of [solver].";
         report.error(choice.origin, ACCURACY, message);
         return false;
     }
@@ -170,7 +172,8 @@ fn fill_accuracy(
             filling.put("analysis", &["steps", "dt"], &steps.to_string(), &why);
         }
         None if scene.is_consolidation() => {
-            let message = "E0254: presets cannot choose the steps of a consolidation analysis. Give dt and growth.";
+            let message = "E0254: a preset cannot choose the time steps of a consolidation analysis. Give analysis.dt \
+                           and analysis.growth.";
             filling.miss("analysis", &["steps", "dt"], message.into());
         }
         None if cells.is_some() || scene.shortest().is_some() => {
@@ -188,15 +191,15 @@ fn fill_accuracy(
     let filled = filling.filled;
     if filled && record.records("rigid").iter().any(|rigid| rigid.gives("free")) {
         report.warn(format!(
-            "W0201: {ACCURACY}: the motion of free rigid bodies is not known in advance, so steps may be too long. Check \
-             that they move less than a cell in a step."
+            "W0201: {ACCURACY}: the preset cannot know how fast free rigid bodies will move, so its time steps may be \
+             too long. Check that the rigid bodies move less than a cell in a step."
         ));
     }
     // With a purpose every key may be given because the purpose has filled it in.
     if !filled && !scene.seeks_limit_load() {
         report.warn(format!(
-            "W0202: {ACCURACY}: all keys that it would choose are given, so it has no effect. Delete it, or some of \
-             them."
+            "W0202: {ACCURACY}: the preset has no effect, because the case gives all keys that the preset would \
+             choose. Delete the preset, or the keys that it should choose."
         ));
     }
     // The document is complete: under another word it would still be this case.
@@ -272,8 +275,8 @@ impl Completion<'_, '_> {
     fn doubt(&mut self, thin: Option<(f64, f64)>) {
         if let Some((side, cell)) = thin {
             self.report.warn(format!(
-                "W0203: {ACCURACY}: a body of {} m has fewer than {FEWEST} cells across ({} m each). Its stresses are \
-                 inaccurate. Set grid.cell to at most {} m.",
+                "W0203: {ACCURACY}: a body with a thickness of {} m has fewer than {FEWEST} cells of {} m across. The \
+                 stresses in this body are inaccurate. Set grid.cell to at most {} m.",
                 brief(side),
                 brief(cell),
                 brief(side / FEWEST)

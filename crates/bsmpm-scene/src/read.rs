@@ -46,7 +46,11 @@ impl Case {
         overrides::apply(&mut document, overrides, &mut report);
         earlier::replace(&mut document, &mut report);
         if document.entries.is_empty() && !report.failed() {
-            report.error(Origin::Nowhere, "", "E0003: the file is empty or has only comments. Check its name.");
+            report.error(
+                Origin::Nowhere,
+                "",
+                "E0003: the file is empty or has only comments. Check the name of the file.",
+            );
             return Err(report.into_errors());
         }
         slips::mend(&mut document, &mut report);

@@ -254,8 +254,9 @@ fn exclusive<'a>(
     {
         reported.pairs.push([&first.key, &second.key]);
         let message = format!(
-            "E0016: `{}` is given too, but only one of the keys {} is allowed. Delete one of them.",
+            "E0016: `{}` and `{}` are both given, but only one of the keys {} is allowed. Delete one of the two.",
             first.key,
+            second.key,
             group.keys.join(", ")
         );
         report.error(second.origin, &join(&record.path, &second.key), message);

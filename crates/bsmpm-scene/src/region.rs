@@ -178,8 +178,8 @@ impl Outline {
         let columns = outline.columns(grid).len();
         if columns > MOST_COLUMNS {
             return Err(format!(
-                "E0036: the shape spans {columns} columns of cells, but at most {MOST_COLUMNS} are possible. Use \
-                 larger cells."
+                "E0036: the shape is {columns} cells wide, but at most {MOST_COLUMNS} cells are possible. Use larger \
+                 cells."
             ));
         }
         outline.count(grid, points_per_cell);
@@ -251,7 +251,7 @@ fn reached(axis: &GridAxis, [lower, upper]: [f64; 2]) -> Range<usize> {
 fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result<(), String> {
     if edges.len() > MOST_EDGES {
         return Err(format!(
-            "E0036: the shape has {} edges with those that are cut out, but at most {MOST_EDGES} are possible. Use \
+            "E0036: the shape, together with its cut-outs, has {} edges, but at most {MOST_EDGES} are possible. Use \
              fewer corners.",
             edges.len()
         ));
@@ -263,8 +263,8 @@ fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result
     let cells: u128 = edges.iter().map(cut).sum();
     if cells * edges.len() as u128 * points_per_cell as u128 > MOST_WORK {
         return Err(format!(
-            "E0036: the {} edges of the shape cut about {cells} cells, so that generating its material points would \
-             take too long. Use fewer corners or larger cells.",
+            "E0036: the {} edges of the shape cut about {cells} cells. Generating its material points would take too \
+             long. Use fewer corners or larger cells.",
             edges.len()
         ));
     }

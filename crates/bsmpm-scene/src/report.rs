@@ -110,7 +110,10 @@ impl<'a> Report<'a> {
     /// Records that the value of `key` is a word that this version does not have any more.
     pub(crate) fn removed(&mut self, origin: Origin, key: &str, word: &'static RemovedWord) {
         let RemovedWord { word: text, last, remedy } = word;
-        let message = format!("E0018: the value \"{text}\" was removed after {last}. {remedy}");
+        let message = format!(
+            "E0018: the value \"{text}\" does not exist any more; the last version with this value was {last}. \
+             {remedy}"
+        );
         let error = self.placed(origin, key, message, Some(word));
         self.errors.push(ReportedError { origin, error, about: vec![key.to_owned()], causes: Vec::new() });
     }
@@ -227,7 +230,7 @@ impl<'a> Report<'a> {
             let more = errors.len() - MOST;
             errors.truncate(MOST);
             let message =
-                format!("E0009: {more} more errors are not shown. Correct those above, and check the case again.");
+                format!("E0009: {more} more errors are not shown. Correct the errors above, and check the case again.");
             errors.push(Error::of_file(self.source.name, &message));
         }
         errors

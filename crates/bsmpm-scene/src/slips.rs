@@ -76,7 +76,7 @@ pub(crate) fn report_unknown(table: &'static Table, written: &DocumentTable, pat
     }
     if let Some(entry) = unknown.next() {
         let message = format!(
-            "E0009: {} more unknown keys follow here and are not listed. Correct those above first.",
+            "E0009: the table has {} more unknown keys, which are not listed. Correct the unknown keys above first.",
             unknown.count() + 1
         );
         report.error(entry.origin, path, message);
@@ -141,7 +141,8 @@ fn list_single_table(node: &mut Node, table: &Table, path: &str, report: &mut Re
     let Value::Table(written) = &mut node.value else { return };
     let name = path.rsplit('.').next().unwrap_or(path);
     let message = format!(
-        "E0047: expected a list of tables, {}, found a table. Write two pairs of brackets, [[{}]], also for a single one.",
+        "E0047: expected a list of tables, {}, found a single table. Write two pairs of brackets, [[{}]], even for \
+         one table.",
         table.header,
         if table.header.starts_with("[[") { table.header.trim_matches(['[', ']']) } else { name }
     );
@@ -154,8 +155,10 @@ fn list_single_table(node: &mut Node, table: &Table, path: &str, report: &mut Re
 fn take_only_table(node: &mut Node, table: &Table, path: &str, report: &mut Report<'_>) {
     let Value::List(items) = &mut node.value else { return };
     let [Node { value: Value::Table(written), .. }] = &mut items[..] else { return };
-    let message =
-        format!("E0048: expected one table, {}, found a list of tables. Write one pair of brackets.", table.header);
+    let message = format!(
+        "E0048: expected one table, {}, found a list of tables. Write one pair of brackets in place of two.",
+        table.header
+    );
     report.error(node.origin, path, message);
     node.value = Value::Table(std::mem::take(written));
 }

@@ -31,8 +31,8 @@ pub fn load(path: &Path) -> io::Result<Vec<u8>> {
     let whole = rows::inlined(text, path.parent().unwrap_or(Path::new(""))).map(String::into_bytes)?;
     if whole.len() > MAX_BYTES {
         let message = format!(
-            "E0004: the case and the rows of its data files have more than {LIMIT} MiB, the limit. Reduce the \
-             number of rows."
+            "E0004: the case file and its data files together are larger than {LIMIT} MiB, the limit. Reduce the \
+             number of rows in the data files."
         );
         return Err(io::Error::new(io::ErrorKind::InvalidData, message));
     }
@@ -58,7 +58,9 @@ fn bounded(path: &Path) -> io::Result<Vec<u8>> {
 pub(crate) fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Vec<Error>> {
     let whole = |message: &str| vec![Error::of_file(name, message)];
     if bytes.len() > MAX_BYTES {
-        let message = format!("E0004: the file has more than {LIMIT} MiB, the limit of a case. Check the file's name.");
+        let message = format!(
+            "E0004: the file is larger than {LIMIT} MiB, the limit for a case file. Check the name of the file."
+        );
         return Err(whole(&message));
     }
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
@@ -67,13 +69,17 @@ pub(crate) fn decode<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Vec<Err
     let line = |at: usize| 1 + bytes[..at].iter().filter(|byte| **byte == b'\n').count();
     if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
         let message = format!(
-            "E0002: line {} has a NUL byte, so the file is binary or UTF-16. Check its name, or save it as UTF-8 text.",
+            "E0002: the file is not plain text: line {} has a zero byte, as in a binary or UTF-16 file. Check the \
+             name of the file, or save the file as UTF-8 text.",
             line(at)
         );
         return Err(whole(&message));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
-        whole(&format!("E0002: line {} is not UTF-8 text. Save the file as UTF-8.", line(error.valid_up_to())))
+        whole(&format!(
+            "E0002: line {} has characters that are not UTF-8 text. Save the file as UTF-8.",
+            line(error.valid_up_to())
+        ))
     })?;
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }

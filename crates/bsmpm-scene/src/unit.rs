@@ -239,12 +239,14 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
     let written = crate::report::shortened(text);
     let units = meant.map_or(String::new(), |dimension| format!(" ({})", list(dimension)));
     let Some((number, unit)) = split(text) else {
-        return Err(format!("E0022: \"{written}\" is not a number with a unit{units}. Begin with the number."));
+        return Err(format!(
+            "E0022: \"{written}\" is not a number with a unit{units}. Write the number first, then the unit."
+        ));
     };
     if unit.is_empty() {
         return Err(format!(
-            "E0022: \"{written}\" has no unit{units}. Add one, or write the number in SI units (angles in degrees) \
-             without quotes."
+            "E0022: \"{written}\" has no unit{units}. Add a unit, or write the number without quotes in SI units \
+             (angles in degrees)."
         ));
     }
     let plain = unit.replace('²', "2").replace('³', "3").replace(['µ', 'μ'], "u").replace('^', "").replace('°', "deg");
@@ -278,14 +280,16 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
     let mantissa = text.split(['e', 'E']).next().unwrap_or(text);
     match value {
         _ if value.is_nan() || text.contains("inf") => {
-            Err(format!("E0010: {written} is not a number that can be used. Write a finite number."))
+            Err(format!("E0010: {written} is infinite or not a number. Write a finite number."))
         }
-        _ if value.is_infinite() => {
-            Err(format!("E0010: {written} is too large for a floating-point number. Check its exponent."))
-        }
-        0.0 if mantissa.contains(|c: char| matches!(c, '1'..='9')) => {
-            Err(format!("E0010: {written} is too small for a floating-point number. Write 0 for zero."))
-        }
+        _ if value.is_infinite() => Err(format!(
+            "E0010: {written} is too large: the largest number that the program can read is 1.8e308. Correct the \
+                 exponent of the number."
+        )),
+        0.0 if mantissa.contains(|c: char| matches!(c, '1'..='9')) => Err(format!(
+            "E0010: {written} is too small: the smallest number above zero that the program can read is 4.9e-324. \
+                 Write 0 for zero."
+        )),
         _ => Ok(value + 0.0), // -0.0 becomes 0.0
     }
 }
@@ -294,8 +298,11 @@ fn value(number: &str, worth: Worth) -> Result<f64, String> {
     let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     match worth {
         Ten(shift) => {
-            let beyond =
-                |_| format!("E0010: {number} is outside the range of floating-point numbers. Check its exponent.");
+            let beyond = |_| {
+                format!(
+                    "E0010: the exponent of {number} is too large or too small for the program. Correct the exponent."
+                )
+            };
             let exponent: i64 = exponent.parse().map_err(beyond)?;
             finite(&format!("{mantissa}e{}", exponent.saturating_add(shift.into())))
         }
@@ -423,7 +430,7 @@ mod tests {
             ("inf m", Length, "E0022"),
             ("1e400 m", Length, "too large"),
             ("1e-400 m", Length, "too small"),
-            ("1e99999999999999999999 m", Length, "outside the range of floating-point numbers"),
+            ("1e99999999999999999999 m", Length, "too large or too small for the program"),
             ("1_000 m", Length, "E0020"),
             ("", Length, "E0022"),
             ("-", Length, "E0022"),

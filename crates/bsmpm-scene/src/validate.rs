@@ -57,7 +57,7 @@ const MOST_SHOWN_FRICTION: f64 = 1.0;
 /// Steps of a run at most.
 const MOST_STEPS: f64 = 1e9;
 /// Of a key that belongs to dynamics, in an analysis of another type.
-const NO_INERTIA: &str = "E0218: this key belongs to dynamics, and the analysis has no inertia. Delete it, or use \
+const NO_INERTIA: &str = "E0218: this key needs inertia, which only a dynamic analysis has. Delete the key, or use \
                           analysis.type = \"dynamic\".";
 /// m/s2  by which a unit weight is divided, whatever the scene's gravity is.
 pub(crate) const STANDARD_GRAVITY: f64 = 9.81;
@@ -233,7 +233,8 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
     };
     if dt > end {
         let message = format!(
-            "E0256: the first step, dt = {dt}, is longer than the analysis, end = {end}. Reduce dt, or give steps."
+            "E0256: the first step, dt = {dt}, is longer than the whole analysis, end = {end}. Reduce `dt`, or give \
+             `steps` in place of `dt`."
         );
         analysis.error("dt", message, report);
         return None;
@@ -241,7 +242,8 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
     let growth = growth(analysis, (kind, dt), report)?;
     if end / dt > MOST_STEPS {
         let message = format!(
-            "E0257: dt = {dt} gives {:.3e} steps until the end (at most {MOST_STEPS:e}). Increase dt.",
+            "E0257: dt = {dt} needs {:.3e} steps until the end of the analysis (at most {MOST_STEPS:e}). Increase \
+             `dt`.",
             end / dt
         );
         analysis.error("dt", message, report);
@@ -265,7 +267,7 @@ fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Repor
     if let Some(key) = keys.next() {
         if kind != AnalysisType::Consolidation {
             let message = format!(
-                "E0258: the steps of a {kind} analysis cannot grow. Delete the key, or use type = \"consolidation\"."
+                "E0258: the steps of a {kind} analysis cannot grow. Delete this key, or use type = \"consolidation\"."
             );
             analysis.error(key, message, report);
             return None;
@@ -273,7 +275,8 @@ fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Repor
         if analysis.gives("steps") {
             analysis.error(
                 key,
-                "E0259: `steps` divides the analysis into equal steps, which cannot grow. Give dt instead.",
+                "E0259: `steps` divides the analysis into equal steps, which cannot grow. Give `dt` in place of \
+                 `steps`.",
                 report,
             );
             return None;
@@ -365,8 +368,8 @@ fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Co
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
-            "W0204: {}: a friction coefficient of {friction} is above {MOST_SHOWN_FRICTION}, the largest that was \
-             verified. Steps may not converge. Use a smaller one, or \"fixed\".",
+            "W0204: {}: a friction coefficient of {friction} is above {MOST_SHOWN_FRICTION}, the largest value that \
+             was verified. Steps may not converge. Use a smaller coefficient, or the support \"fixed\".",
             face.path_of("friction_coefficient")
         ));
     }
@@ -392,13 +395,14 @@ fn gravity(record: &Record, regime: Option<Regime>, end: Option<f64>, report: &m
     if off <= 0.01 && off > NEARLY_STANDARD {
         report.warn(format!(
             "W0205: gravity.acceleration: gravity is {size} m/s2, but unit weights are converted to densities with \
-             {STANDARD_GRAVITY}. Weights differ by {:.2} %. Use {STANDARD_GRAVITY} m/s2.",
+             {STANDARD_GRAVITY} m/s2, so all weights are off by {:.2} %. Use {STANDARD_GRAVITY} m/s2.",
             1e2 * off
         ));
     }
     if size == 0.0 {
         report.warn(
-            "W0206: gravity.acceleration: gravity is zero, so the soil has no weight. Correct it, or delete [gravity].",
+            "W0206: gravity.acceleration: gravity is zero, so the soil has no weight. Correct the acceleration, or \
+             delete [gravity].",
         );
     }
     if end.is_some_and(|end| ramp > end) {

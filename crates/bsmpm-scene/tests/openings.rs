@@ -146,8 +146,8 @@ fn too_few_cells_are_warned_of() {
     let warning = warnings.iter().find(|warning| warning.contains("hole or notch")).unwrap();
     assert_eq!(
         warning,
-        "W0227: body.0.subtract.0: the hole or notch of 1 m is 5.0 cells across (at least 8 needed). Stresses at its \
-         edge are off by more than 10 %. Use smaller cells there."
+        "W0227: body.0.subtract.0: the hole or notch, 1 m wide, has 5.0 cells across, but needs at least 8. Stresses \
+         at its edge are off by more than 10 %. Use smaller cells there."
     );
     assert!(warning.len() <= 200, "{}", warning.len());
 }

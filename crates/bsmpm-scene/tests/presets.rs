@@ -156,7 +156,9 @@ fn cells_too_wide_for_a_body_are_warned_of() {
     let lining = "body.1={ material = \"rods\", box = { lower = [0.3, 0.0], upper = [0.315, 0.1] } }";
     let warned = |word: &str| {
         let case = valid(COLUMN, &[&format!("accuracy={word}"), lining]);
-        case.warnings.iter().any(|warning| warning.contains("a body of 0.015 m has fewer than 2 cells"))
+        case.warnings
+            .iter()
+            .any(|warning| warning.contains("a body with a thickness of 0.015 m has fewer than 2 cells"))
     };
     assert!(warned("draft") && !warned("standard"));
 }
@@ -367,7 +369,7 @@ fn cells_are_moved_to_where_strips_end_and_materials_meet() {
     assert!(moved.warnings.is_empty(), "{:?}", moved.warnings);
     // By hand, nothing is moved, and it is reported.
     let by_hand = valid(FOOTING, &["accuracy=draft", aside, "footing.to=[9.3, 5.0]", "grid.cell=1.0"]);
-    assert!(by_hand.warnings.iter().any(|warning| warning.contains("lies inside a cell")), "{:?}", by_hand.warnings);
+    assert!(by_hand.warnings.iter().any(|warning| warning.contains("is not on a grid line")), "{:?}", by_hand.warnings);
 }
 
 /// Softening goes by the edge of equal squares: a preset neither grades its cells nor makes them oblong.

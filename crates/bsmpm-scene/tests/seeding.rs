@@ -126,7 +126,7 @@ fn warnings_that_repeat_for_every_body_are_one_line() {
     let warnings = case("lower = [0, 0]\nupper = [8, 8]\ncell = 1", &boxes, 2).warnings;
     let thin: Vec<_> = warnings.iter().filter(|warning| warning.starts_with("W0212")).collect();
     assert!(
-        thin.len() == 1 && thin[0].starts_with("W0212: body.0 and 7 others: the body is 0.10 cells thick along y"),
+        thin.len() == 1 && thin[0].starts_with("W0212: body.0 and 7 others: the body is only 0.10 cells thick along y"),
         "{thin:?}"
     );
 }

@@ -24,7 +24,10 @@ pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report
             report.error(
                 Origin::Nowhere,
                 "",
-                format!("E0005: the line does not follow the TOML format: {}.", error.message),
+                format!(
+                    "E0005: the line does not follow the TOML format: {}. Correct this line or the line before.",
+                    error.message
+                ),
             );
             continue;
         };
@@ -76,7 +79,7 @@ fn explained(source: &Source<'_>, span: &std::ops::Range<usize>, message: &str) 
     if is_number_with_unit(value) {
         return format!("E0043: `{}` has a unit, but no quotes. Write \"{}\".", shortened(value), shortened(value));
     }
-    format!("E0005: the line does not follow the TOML format: {message}.")
+    format!("E0005: the line does not follow the TOML format: {message}. Correct this line or the line before.")
 }
 
 /// The number with a decimal point if it is written with a comma.
@@ -112,14 +115,24 @@ fn duplicate(source: &Source<'_>, span: &std::ops::Range<usize>, line: &str) -> 
     match first {
         Some((number, first)) if first.is_list == header.is_list => {
             format!(
-                "E0045: the table [{name}] is given twice, here and in line {number}. Put all of its keys into one of them."
+                "E0045: the table [{name}] is given twice, here and in line {number}. Put the keys of both below one \
+                 of the two headings."
             )
         }
-        Some((number, _)) => format!(
-            "E0046: `{name}` has two pairs of brackets in one place and one pair in the other (line {number}). Write [[{name}]] in both."
+        Some((number, first)) => format!(
+            "E0046: `{name}` has {} here, but {} in line {number}. Write [[{name}]] in both.",
+            pairs(header.is_list),
+            pairs(first.is_list)
         ),
-        None => format!("E0045: the table [{name}] is given twice. Put all of its keys into one of them."),
+        None => {
+            format!("E0045: the table [{name}] is given twice. Put the keys of both below one of the two headings.")
+        }
     }
+}
+
+/// The brackets of a header in words.
+fn pairs(is_list: bool) -> &'static str {
+    if is_list { "two pairs of brackets" } else { "one pair of brackets" }
 }
 
 /// The header of a table, or of one of a list.

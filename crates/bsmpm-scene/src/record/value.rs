@@ -14,8 +14,8 @@ use bsmpm_messages::{code_of, with_context};
 const WRONG_ROWS: usize = 3;
 
 /// Of a file that `--set` names: a case is whole before it is overridden.
-pub(crate) const UNREAD: &str =
-    "E0027: --set does not read data files. Name the file in the case, or set the rows of numbers.";
+pub(crate) const UNREAD: &str = "E0027: --set does not read data files. Name the data file in the case file, or write \
+                                 the rows of numbers themselves.";
 
 /// Longest name of a material, column or check.
 const LONGEST_NAME: usize = 64;
@@ -94,7 +94,10 @@ pub(super) fn expected(kind: &Kind, node: &Node) -> String {
 
 /// What is wrong with a whole number that has more digits than one can have.
 fn too_long(text: &str) -> String {
-    format!("E0010: {} is too large for a whole number. Write it with an exponent, such as 1e20.", shortened(text))
+    format!(
+        "E0010: {} has too many digits for a whole number. Write the number with an exponent, such as 1e20.",
+        shortened(text)
+    )
 }
 
 /// Whether `text` is fit for a name that stands in files' headers and key paths.
@@ -135,7 +138,8 @@ impl ValueReader<'_, '_> {
         let message = match node.origin {
             Origin::Override(_) => UNREAD,
             Origin::Text(_) | Origin::Nowhere => {
-                "E0027: a data file needs braces with `file`, and nothing else but `along`. Write { file = \
+                "E0027: a data file is named in braces, by the key `file` and at most the key `along`. Write { file = \
+                 \
                  \"rows.csv\" }."
             }
         };
@@ -163,14 +167,18 @@ impl ValueReader<'_, '_> {
         if !range.contains(value) {
             let allowed = range.condition(self.name) + &self.si(dimension);
             let why = if range.why.is_empty() { String::new() } else { format!(": {}", range.why) };
-            return self.fail(node, format!("E0010: {} is outside the allowed range ({allowed}){why}.", node.show()));
+            return self.fail(
+                node,
+                format!("E0010: {} is outside the allowed range ({allowed}){why}. Correct the value.", node.show()),
+            );
         }
         let divides = dimension == Dimension::Time || !range.contains(0.0);
         if divides && value != 0.0 && value.abs() < dimension.least() {
             let (least, unit) = (dimension.least(), self.si(dimension));
             let found = node.show();
             let message = format!(
-                "E0010: {found} is too close to zero: {dimension} is at least {least:e}{unit}. Check the value."
+                "E0010: {found} is too close to zero: the smallest allowed value of {dimension} is {least:e}{unit}. \
+                 Correct the value or its unit."
             );
             return self.fail(node, message);
         }
@@ -204,13 +212,13 @@ impl ValueReader<'_, '_> {
     fn worded(&self, node: &Node, text: &str, dimension: Dimension) -> Result<f64, String> {
         match dimension {
             Dimension::Time if self.pseudo_time => Err(format!(
-                "E0023: {} has a unit, but time is a dimensionless pseudo-time in a quasi-static analysis. Write a \
-                     number without unit.",
+                "E0023: {} has a unit, but time is a dimensionless pseudo-time in a quasi-static analysis. Write the \
+                 number without a unit.",
                 node.show()
             )),
             Dimension::Velocity if self.pseudo_time => Err(format!(
                 "E0023: {} has a unit of time, but time is a dimensionless pseudo-time in a quasi-static analysis. \
-                 Write a number, in m per unit of pseudo-time.",
+                 Write the velocity without a unit, in m per unit of pseudo-time.",
                 node.show()
             )),
             Dimension::LineForce if self.geometry != Geometry::PlaneStrain => unit::parse(text, Dimension::Force),
@@ -224,7 +232,8 @@ impl ValueReader<'_, '_> {
         if value.abs() > most {
             let (found, unit) = (node.show(), self.si(dimension));
             let message = format!(
-                "E0010: {found} is too large: {dimension} is at most {most:e}{unit}. Check the value and its unit."
+                "E0010: {found} is too large: the largest allowed value of {dimension} is {most:e}{unit}. Correct the \
+                 value or its unit."
             );
             return self.fail(node, message);
         }
@@ -255,8 +264,8 @@ impl ValueReader<'_, '_> {
             if wrong == WRONG_ROWS && read.len() < items.len() {
                 let more = items.len() - read.len();
                 let message = format!(
-                    "E0009: {more} more rows were not read, because {WRONG_ROWS} rows in succession are wrong. \
-                     Correct those first."
+                    "E0009: {more} more rows were not checked, because {WRONG_ROWS} rows in succession are wrong. \
+                     Correct these rows first."
                 );
                 return self.fail(node, message);
             }
@@ -316,7 +325,12 @@ impl ValueReader<'_, '_> {
             Ok(count) if (least..=most).contains(&count) => Some(Datum::Count(count)),
             _ => {
                 let (found, name) = (shortened(text), self.name);
-                self.fail(node, format!("E0010: {found} is outside the allowed range ({least} <= {name} <= {most})."))
+                self.fail(
+                    node,
+                    format!(
+                        "E0010: {found} is outside the allowed range ({least} <= {name} <= {most}). Correct the value."
+                    ),
+                )
             }
         }
     }

@@ -6,7 +6,7 @@ use bsmpm::boundary::rigid::Terrain;
 const ROUNDING: f64 = 1e-3;
 
 /// Of too few rows for a raster.
-const TOO_FEW: &str = "E0032: a raster needs at least two points along x and two along y. Add rows.";
+const TOO_FEW: &str = "E0032: the heights of a terrain need at least two points along x and two along y. Add rows.";
 
 /// Heights at the posts of a regular raster, and a base under them.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,8 +52,8 @@ impl Raster {
         if count[0].saturating_mul(count[1]) != rows.len() {
             let [x, y] = count;
             return Err(format!(
-                "E0032: the {} rows are not a regular raster: spacings of {} m along x and {} m along y need {x} x \
-                 {y} rows. Interpolate them to a raster.",
+                "E0032: the {} rows are not a regular grid of points: spacings of {} m along x and {} m along y need \
+                 {x} x {y} rows. Interpolate the heights to a regular grid.",
                 rows.len(),
                 spacing[0],
                 spacing[1]
@@ -67,10 +67,12 @@ impl Raster {
             let is_off = (0..2).any(|axis| (part[axis] - part[axis].round()).abs() > ROUNDING);
             let place = post[1] * count[0] + post[0];
             if is_off || !top[place].is_nan() {
-                let what =
-                    if is_off { "is not a point of the regular raster of the other rows" } else { "occurs twice" };
+                let what = if is_off { "is not on the regular grid of the other points" } else { "is given twice" };
                 let [x, y, _] = row;
-                return Err(format!("E0032: the point [{x}, {y}] {what}. Interpolate the rows to a raster."));
+                return Err(format!(
+                    "E0032: the point x = {x} m, y = {y} m {what}. Correct this row, or interpolate all heights to a \
+                     regular grid of points."
+                ));
             }
             top[place] = row[2];
         }
@@ -86,7 +88,9 @@ impl Raster {
         };
         if self.count != base.count || !near(0) || !near(1) {
             return Err(
-                "E0032: `base` and `top` are rasters of different points. Interpolate both to the same raster.".into(),
+                "E0032: `base` and `top` give heights at different points. Interpolate both to the same regular grid \
+                 of points."
+                    .into(),
             );
         }
         Self { base: base.top, ..self }.checked()
@@ -98,12 +102,14 @@ impl Raster {
             let at = [post % self.count[0], post / self.count[0]];
             let [x, y] = [0, 1].map(|axis| self.lower[axis] + at[axis] as f64 * self.spacing[axis]);
             return Err(format!(
-                "E0033: at [{x}, {y}] the top ({top} m) is below the base ({base} m). Correct the heights."
+                "E0033: at x = {x} m, y = {y} m the top ({top} m) is below the base ({base} m). Correct the heights."
             ));
         }
         if self.top == self.base {
             return Err(
-                "E0033: `top` and `base` have the same heights, so that the body is empty. Correct the heights.".into(),
+                "E0033: `top` and `base` have the same heights everywhere, so the body has no volume. Correct the \
+                 heights."
+                    .into(),
             );
         }
         Ok(self)
@@ -191,12 +197,12 @@ mod tests {
         };
         let mut posts = rows(|_, _| 1.0);
         says(&posts, 2.0, "is below the base (2 m)");
-        says(&posts, 1.0, "the body is empty");
+        says(&posts, 1.0, "the body has no volume");
         posts[7][0] += 0.1;
-        says(&posts, 0.0, "not a regular raster");
+        says(&posts, 0.0, "not a regular grid");
         let mut twice = rows(|_, _| 1.0);
         twice[3] = twice[2];
-        says(&twice, 0.0, "occurs twice");
+        says(&twice, 0.0, "is given twice");
         says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "two points along x and two along y");
     }
 }

@@ -34,14 +34,18 @@ impl Surface {
         let mut triangles: Vec<[[f64; 3]; 3]> =
             rows.map(|row| [0, 1, 2].map(|k| corner(&row, k))).filter(|[a, b, c]| a != b && b != c && c != a).collect();
         if triangles.is_empty() {
-            return Err("E0034: the surface has no triangle with three different corners. Check its file.".into());
+            return Err(
+                "E0034: no triangle of the surface has three different corners, so the surface has no area. Correct \
+                 the triangles or their file."
+                    .into(),
+            );
         }
         closed(&triangles)?;
         let bounds = bounds(&triangles);
         let volume = volume(&triangles, bounds[0]);
         let size: f64 = (0..3).map(|axis| bounds[1][axis] - bounds[0][axis]).product();
         if volume.abs() <= ROUNDING * size {
-            return Err("E0034: the surface encloses no volume. Export it as a closed surface.".into());
+            return Err("E0034: the surface encloses no volume. Export a closed surface.".into());
         }
         if volume < 0.0 {
             triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
@@ -169,8 +173,8 @@ impl Surface {
             if !(0..=1).contains(&depth) && z - last > ROUNDING * height {
                 let [x, y] = at;
                 return Err(format!(
-                    "E0035: the surface intersects itself near [{x:.6}, {y:.6}, {z:.6}], or a part of it is turned \
-                     inside out. Repair it with a mesh tool."
+                    "E0035: the surface intersects itself, or has normals that point inwards, near [{x:.6}, {y:.6}, \
+                     {z:.6}] m. Repair the surface with a mesh tool."
                 ));
             }
             (depth, last) = (depth - crossing, z);
@@ -237,8 +241,8 @@ fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), String> {
     match edges.values().find(|sides| sum(sides) != 0) {
         None => Ok(()),
         Some(sides) => Err(format!(
-            "E0034: the surface is not closed at {open} edges, the first from {:?} to {:?}. Weld vertices, fill holes \
-             and make normals consistent with a mesh tool.",
+            "E0034: the surface is not closed at {open} edges, first at the edge from {:?} to {:?} m. Weld vertices, \
+             fill holes and make normals consistent with a mesh tool.",
             sides[0].ends[0], sides[0].ends[1]
         )),
     }
@@ -435,7 +439,7 @@ mod tests {
         says(one_turned, "not closed at 3 edges");
         says([block.clone(), turned(block.clone())].concat(), "encloses no volume");
         says([block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(), "intersects itself");
-        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "is turned inside out");
+        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "normals that point inwards");
         // Blocks with sides in common that overlap by little, and bars across each other, with sides in common and not.
         says([block.clone(), cuboid([0.99, 0.0, 0.0], [1.99, 1.0, 1.0])].concat(), "intersects itself");
         says([block.clone(), cuboid([0.3, 0.2, 0.99], [0.4, 0.5, 2.0])].concat(), "intersects itself");

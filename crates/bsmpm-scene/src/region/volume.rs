@@ -62,8 +62,8 @@ impl Volume {
         // A factor below zero: cells that seem whole hold more than the body.
         if matches!(made.filling, Filling::Lattice { .. }) && (unseen || made.scale() <= 0.0) {
             return Err(
-                "E0037: the shape is so thin that it lies between the lines on which its volume is computed. Use \
-                 smaller cells, or make it thicker."
+                "E0037: the shape is too thin for the size of the cells, so its volume cannot be calculated. Use \
+                 smaller cells, or make the shape thicker."
                     .into(),
             );
         }
@@ -263,7 +263,7 @@ impl Filling {
         let rows = reached(&axes[2], [lower[2], upper[2]]).len() * n;
         if lines * (edges(whole) + cut.iter().map(edges).sum::<usize>() + rows) as u128 > MOST_WORK {
             return Err(
-                "E0036: the shape has so many cells that generating its material points would take too long. Use \
+                "E0036: the shape covers so many cells that generating its material points would take too long. Use \
                  larger cells."
                     .into(),
             );

@@ -72,12 +72,13 @@ const ANSWERS: &[Answer] = &[
     symbol(&["St", "S_t"], "The sensitivity is the key `sensitivity`, of model = \"sensitive-clay\"."),
     symbol(
         &["tension_cutoff", "tension_cut_off", "tensile_strength"],
-        "E0012: a tension cut-off is not available: the largest mean tension is c / tan(phi). Reduce `cohesion`, \
-         which also reduces the shear strength; without cohesion use separation = \"gap\".",
+        "E0012: a tension cut-off is not available: the soil carries a mean tension of up to c / tan(phi). Reduce \
+         `cohesion`, which also reduces the shear strength. For soil with cohesion = 0, set separation = \"gap\".",
     ),
     symbol(
         &["adhesion"],
-        "E0012: an adhesion of an interface is not available. Use \"smooth\", \"rough\" or a `friction_coefficient`.",
+        "E0012: an adhesion between soil and structure is not available. Set the contact to \"smooth\" or \"rough\", \
+         or give it a `friction_coefficient`.",
     ),
     top(
         &["groundwater", "phreatic", "water_table", "pore_water"],
@@ -88,8 +89,8 @@ const ANSWERS: &[Answer] = &[
             "anchor", "anchors", "beam", "beams", "plate", "plates", "pile", "piles", "geogrid", "geogrids", "strut",
             "wall", "walls",
         ],
-        "E0012: structural elements are not available. Use an elastic [[body]] with the same bending stiffness, or a \
-         [[rigid]] body. Anchors and geogrids have no equivalent.",
+        "E0012: structural elements such as beams, plates and anchors are not available. Use an elastic [[body]] with \
+         the same bending stiffness, or a [[rigid]] body. Nothing replaces anchors and geogrids.",
     ),
     top(&["bodies"], "Bodies are tables `[[body]]`, one for each."),
     top(&["materials"], "Materials are tables `[material.NAME]`, one for each."),

@@ -38,7 +38,8 @@ choice! {
         "hs-small": "E0012: this model is not available. Use \"mohr-coulomb\", or \"modified-cam-clay\" for soft clay.",
         "soft-soil": "E0012: this model is not available. Use \"modified-cam-clay\".",
         "cam-clay": "E0012: this model is not available. Use \"modified-cam-clay\".",
-        "hoek-brown": "E0012: this model is not available. Use \"mohr-coulomb\" with the strength at the stress level of the problem.",
+        "hoek-brown": "E0012: this model is not available. Use \"mohr-coulomb\" with the cohesion and friction angle \
+                       for the stress level of the problem.",
         "hypoplastic": "E0012: this model is not available. Use \"mohr-coulomb-softening\".",
         "hypoplasticity": "E0012: this model is not available. Use \"mohr-coulomb-softening\".",
         "linear-elastic": "Use \"elastic\"",

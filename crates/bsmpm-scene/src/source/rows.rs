@@ -75,14 +75,15 @@ fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
 }
 
 /// Of a record as the databases of ground motions write it.
-const PEER: &str = "E0049: this is a record in PEER's format (.AT2), which is not read. Write a text file with the columns \
-                    `t [s], a [g]`, one row per sample: t is the number of the row times DT.";
+const PEER: &str = "E0049: the program does not read ground motions in PEER's format (.AT2). Write a text file with \
+                    the heading `t [s], a [g]` and a row for each value: the time (steps of DT) and the \
+                    acceleration.";
 
 /// The bytes of a file that is not longer than a case may be.
 fn read(path: &Path) -> io::Result<Vec<u8>> {
     let bytes = bounded(path)?;
     if bytes.len() > MAX_BYTES {
-        let message = format!("E0004: the file has more than {LIMIT} MiB, the limit. Reduce the number of rows.");
+        let message = format!("E0004: the data file is larger than {LIMIT} MiB, the limit. Reduce the number of rows.");
         return Err(Error::new(ErrorKind::InvalidData, message));
     }
     Ok(bytes)
@@ -132,14 +133,14 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         if cells.len() != expected {
             let found = cells.len();
             return Err(bad(format!(
-                "E0028: line {number} has {found} columns where {expected} are expected. Give all rows the same number of \
-                 columns."
+                "E0028: the number of columns in line {number} is {found}, but in the first line it is {expected}. \
+                 Give all lines the same number of columns."
             )));
         }
         if along.is_some() && expected != 2 {
             return Err(bad(format!(
-                "E0028: with `along` a row has two columns, a time and a value, but line {number} has {expected}. \
-                 Delete `along`."
+                "E0028: with `along` each row has two columns, a time and a value, but line {number} has {expected} \
+                 columns. Delete `along`, or reduce the columns to two."
             )));
         }
         let mut row = Vec::with_capacity(cells.len() + 1);
@@ -160,7 +161,7 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         whole.push_str(&format!("[{}],", row.join(",")));
     }
     if width.is_none() {
-        return Err(bad("E0028: the data file has no row of numbers. Check its name.".to_owned()));
+        return Err(bad("E0028: the data file has no row of numbers. Check the name of the file.".to_owned()));
     }
     whole.push(']');
     Ok(whole)
@@ -183,8 +184,9 @@ fn grid(text: &str) -> io::Result<String> {
     }
     let given = |key: &str| header.get(key).copied();
     let needed = |key: &str| {
-        given(key)
-            .ok_or_else(|| bad(format!("E0030: the header of the ASCII grid has no `{key}`. Add a line with it.")))
+        given(key).ok_or_else(|| {
+            bad(format!("E0030: the header of the ASCII grid has no `{key}`. Add a line with `{key}` and its value."))
+        })
     };
     let (columns, lines, cell) = (needed("ncols")?, needed("nrows")?, needed("cellsize")?);
     let first = |axis: &str| match given(&format!("{axis}llcenter")) {
@@ -194,13 +196,13 @@ fn grid(text: &str) -> io::Result<String> {
     let (x, y) = (first("x")?, first("y")?);
     let heights: Vec<&str> = words.collect();
     if columns < 2.0 || lines < 2.0 || columns.fract() + lines.fract() != 0.0 || cell <= 0.0 {
-        let message = "E0030: the ASCII grid needs whole numbers above 1 as ncols and nrows, and a cellsize above 0. \
-        Correct its header.";
+        let message = "E0030: in the header of the ASCII grid, ncols and nrows must be whole numbers above 1, and \
+                       cellsize must be above 0. Correct the header.";
         return Err(bad(message.to_owned()));
     }
     if heights.len() as f64 != columns * lines {
         return Err(bad(format!(
-            "E0030: the ASCII grid has {} heights, but ncols times nrows is {}. Export it again.",
+            "E0030: the ASCII grid has {} heights, but ncols times nrows is {}. Export the grid again.",
             heights.len(),
             columns * lines
         )));
@@ -215,7 +217,8 @@ fn grid(text: &str) -> io::Result<String> {
         })?;
         if given("nodata_value") == Some(value) {
             return Err(bad(format!(
-                "E0030: {place} of the ASCII grid has no data. Fill it, or cut the grid to the part that has data."
+                "E0030: {place} of the ASCII grid has no data. Fill in a height, or cut the grid to the part that has \
+                 data."
             )));
         }
         let at = [x + column as f64 * cell, y + (lines - 1.0 - row as f64) * cell];
@@ -263,15 +266,16 @@ mod tests {
         let message = |text: &str| grid(text).unwrap_err().to_string();
         assert_eq!(
             message(&format!("{header}1 2\n3 -9999\n")),
-            "E0030: row 2, column 2 of the ASCII grid has no data. Fill it, or cut the grid to the part that has data."
+            "E0030: row 2, column 2 of the ASCII grid has no data. Fill in a height, or cut the grid to the part that \
+             has data."
         );
         assert_eq!(
             message(&format!("{header}1 2\n3\n")),
-            "E0030: the ASCII grid has 3 heights, but ncols times nrows is 4. Export it again."
+            "E0030: the ASCII grid has 3 heights, but ncols times nrows is 4. Export the grid again."
         );
         assert_eq!(
             message("ncols 2\nnrows 2\n1 2\n3 4"),
-            "E0030: the header of the ASCII grid has no `cellsize`. Add a line with it."
+            "E0030: the header of the ASCII grid has no `cellsize`. Add a line with `cellsize` and its value."
         );
         assert_eq!(
             message("ncols x\n"),
@@ -311,9 +315,10 @@ mod tests {
         );
         assert_eq!(
             message("0,1\n2", None),
-            "E0028: line 2 has 1 columns where 2 are expected. Give all rows the same number of columns."
+            "E0028: the number of columns in line 2 is 1, but in the first line it is 2. Give all lines the same \
+             number of columns."
         );
-        assert_eq!(message("t, ax\n", None), "E0028: the data file has no row of numbers. Check its name.");
+        assert_eq!(message("t, ax\n", None), "E0028: the data file has no row of numbers. Check the name of the file.");
         assert_eq!(
             message("0,nan", None),
             "E0028: `nan` in line 1 of the data file is not a number. Correct the line."

@@ -27,14 +27,14 @@ fn length(number: u32) -> u64 {
 pub(super) fn broken(bytes: &[u8]) -> Error {
     let message = match announced(bytes) {
         Some(number) => format!(
-            "E0031: the binary STL file has {} bytes, but its {number} triangles need {}. The file is cut off. Export \
-             it again.",
+            "E0031: the binary STL file has {} bytes, but its {number} triangles need {}, so the file is incomplete. \
+             Export the file again.",
             bytes.len(),
             length(number)
         ),
         None => format!(
-            "E0031: the binary STL file has {} bytes, but its header needs {STL_HEADING}. The file is cut off. \
-             Export it again.",
+            "E0031: the binary STL file has {} bytes, but its header needs {STL_HEADING}, so the file is incomplete. \
+             Export the file again.",
             bytes.len()
         ),
     };
@@ -50,7 +50,8 @@ pub(super) fn triangles(bytes: &[u8]) -> io::Result<String> {
         let corners: Vec<String> = singles.filter(|at| at.is_finite()).map(|at| format!("{at:?}")).collect();
         if corners.len() != 9 {
             let message = format!(
-                "E0031: a corner of triangle {} of the STL file is not a finite number. Export it again.",
+                "E0031: a corner of triangle {} of the STL file has a coordinate that is not a finite number. Export \
+                 the file again.",
                 number + 1
             );
             return Err(Error::new(ErrorKind::InvalidData, message));
@@ -74,7 +75,8 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
                     words.filter_map(|word| word.parse().ok()).filter(|at: &f64| at.is_finite()).collect();
                 if numbers.len() != 3 {
                     return Err(bad(format!(
-                        "E0031: the vertex in line {} of the STL file does not have three numbers. Export it again.",
+                        "E0031: the vertex in line {} of the STL file does not have three numbers. Export the file \
+                         again.",
                         number + 1
                     )));
                 }
@@ -86,7 +88,8 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
             }
             Some("endfacet") => {
                 return Err(bad(format!(
-                    "E0031: the facet that ends in line {} of the STL file does not have three vertices. Export it again.",
+                    "E0031: the facet that ends in line {} of the STL file does not have three vertices. Export the \
+                     file again.",
                     number + 1
                 )));
             }
@@ -94,7 +97,9 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
         }
     }
     if !corners.is_empty() || whole.len() == 1 {
-        return Err(bad("E0031: the STL file ends within a triangle, or has none. Export it again.".to_owned()));
+        return Err(bad(
+            "E0031: the STL file ends within a triangle, or has no triangle. Export the file again.".to_owned()
+        ));
     }
     whole.push(']');
     Ok(whole)

@@ -8,10 +8,9 @@ use crate::words::{Measurement, Side, Word};
 
 /// The face at the axis.
 const AXIS: Face = Face { axis: 0, upper: false };
-const SIDEWAYS: &str = "E0242: x is the radius of an axisymmetric case, so nothing can move or act along one direction \
-                        x. Set the x component to 0.";
-const ROTATION: &str =
-    "E0242: a body of revolution cannot rotate in the plane of an axisymmetric case. Delete this key.";
+const SIDEWAYS: &str = "E0242: in an axisymmetric case x is the radius, so this motion or force cannot have a \
+                        component along x. Set the x component to 0.";
+const ROTATION: &str = "E0242: in an axisymmetric case a body cannot rotate in the plane. Delete this key.";
 
 /// Errors of a case that is valid in its parts.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
@@ -30,8 +29,8 @@ fn cubic(case: &Case, report: &mut Report<'_>) {
     let meets_axis = |body: &Body| body.occupied(&case.grid)[0].start == 0;
     if case.grid.order == 3 && case.bodies.iter().any(meets_axis) {
         report.warn(
-            "W0234: grid.degree: cubic splines at the axis of symmetry are up to 2 % off for a uniform stress. Use \
-             \"quadratic\", which is within 0.2 %.",
+            "W0234: grid.degree: with cubic splines, a uniform stress is up to 2 % off at the axis of symmetry. Use \
+             \"quadratic\" splines, whose error is below 0.2 %.",
         );
     }
 }
@@ -42,8 +41,8 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
         && case.grid.lower()[0] != 0.0
     {
         let key = if grid.gives("knots") { "knots" } else { "lower" };
-        let message = "E0238: the grid of an axisymmetric case must begin at the axis, x = 0, as x is the radius. Set \
-                       its lower end to 0; empty cells cost nothing.";
+        let message = "E0238: the grid of an axisymmetric case must begin at x = 0, because x is the radius. Set the \
+                       lower end of the grid along x to 0; empty cells cost nothing.";
         grid.error(key, message, report);
     }
     let tables = std::iter::once(record).chain(record.records("stage")).filter_map(|table| table.record("boundary"));
@@ -55,8 +54,8 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
                     boundary.error(word, "E0239: this face is the axis of symmetry. Set it to \"roller\".", report);
                 }
             } else if found == Some(Support::FreeField) {
-                let message = "E0240: a free field shakes sideways, which is not axisymmetric. Use \"absorbing\", or a \
-                               distant \"roller\".";
+                let message = "E0240: a free field shakes sideways, which is not axisymmetric. Use \"absorbing\", or \
+                               \"roller\" at a larger distance.";
                 boundary.error(word, message, report);
             }
         }
@@ -121,7 +120,8 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
             let key = if record.gives("force_path") { "force_path" } else { "force" };
             record.error(
                 key,
-                "E0242: a force on the axis of symmetry has no radial direction. Set its x component to 0.",
+                "E0242: a force on the axis of symmetry cannot have a radial component. Set the x component of the \
+                 force to 0.",
                 report,
             );
         }
@@ -141,7 +141,7 @@ fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
         if rigid.free[0] || rigid.free[2] {
             record.error(
                 "free",
-                "E0242: a body of revolution can move along its axis only. Use free = [\"y\"].",
+                "E0242: in an axisymmetric case a rigid body can move along the axis (y) only. Use free = [\"y\"].",
                 report,
             );
         }
@@ -156,7 +156,10 @@ fn quantities(case: &Case, record: &Record, report: &mut Report<'_>) {
         if matches!(measured, AngularMomentum | Moment | RigidMoment | RigidRotation) {
             record.error(
                 "quantity",
-                format!("E0243: an axisymmetric case has no \"{measured}\". Choose another quantity."),
+                format!(
+                    "E0243: the quantity \"{measured}\" is zero in every axisymmetric case, because of the symmetry. \
+                     Choose another quantity."
+                ),
                 report,
             );
         }
@@ -171,7 +174,7 @@ fn on_axis(ends: [[f64; 2]; 2], record: &Record, report: &mut Report<'_>) {
     if ends.iter().all(|end| end[0] == 0.0) {
         record.error(
             "from",
-            "E0241: the segment lies on the axis of symmetry, where a surface has no area. Move one end off it.",
+            "E0241: the segment lies on the axis of symmetry, so its area is zero. Move one end away from the axis.",
             report,
         );
     }

@@ -67,7 +67,8 @@ fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option
     if spin.gives("axis") && (geometry != Geometry::Solid || length == 0.0) {
         let message = match geometry {
             Geometry::Solid => {
-                "E0217: the axis of rotation has no direction, as all its components are zero. Correct it."
+                "E0217: all components of the axis of rotation are zero, so it has no direction. Give a vector along \
+                 the axis."
             }
             _ => {
                 "E0207: a body in a 2-D case rotates about the normal of the plane. Delete `axis`, or use geometry = \
@@ -96,8 +97,8 @@ fn read(
     let points_per_cell = record.count("points_per_cell").map(|count| count as usize);
     if points_per_cell == Some(2) && grid.is_some_and(|grid| grid.order == 3) {
         report.warn(format!(
-            "W0209: {}: 2 material points per cell are too few for cubic splines. Stresses are off by several per \
-             cent. Use points_per_cell = 3, or grid.degree = \"quadratic\".",
+            "W0209: {}: points_per_cell = 2 is too small for cubic splines. Stresses are off by several per cent. Use \
+             points_per_cell = 3, or grid.degree = \"quadratic\".",
             record.path
         ));
     }
@@ -111,8 +112,8 @@ fn read(
     let name = record.text("name").map(str::to_owned);
     let body = Body { name, material: material?, region: region?, points_per_cell: points_per_cell?, velocity, spin };
     if grid.is_some_and(|grid| body.points(grid) == 0) {
-        let message = "E0219: the body is thinner than 1e-9 of a cell, so it has no material points. Make it thicker, \
-                       or use smaller cells.";
+        let message = "E0219: the body is thinner than 1e-9 of a cell, so it has no material points. Make the body \
+                       thicker, or use smaller cells.";
         match record.record("box") {
             Some(record) => record.error("upper", message, report),
             None => record.error(shape::key(record), message, report),
@@ -130,8 +131,7 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
     let single = paths(&|body| body.points_per_cell == 1 && is_coarse(body, grid));
     if !single.is_empty() {
         report.warn(format!(
-            "W0210: {}: 1 material point per cell is too few for accurate stresses. Increase points_per_cell to 2 or \
-             more.",
+            "W0210: {}: points_per_cell = 1 is too small for accurate stresses. Increase points_per_cell to 2 or more.",
             listed(&single)
         ));
     }
@@ -141,8 +141,8 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
         let paths = paths(&|body| alone(body).is_some());
         let up_to = if paths.len() > 1 { "up to " } else { "" };
         report.warn(format!(
-            "W0211: {}: {up_to}{:.0} % of the body is thinner than the spacing of its material points. Bending there \
-             is unreliable. Use smaller cells, or increase points_per_cell.",
+            "W0211: {}: {up_to}{:.0} % of the body is thinner than the spacing of its material points. The bending of \
+             these thin parts is unreliable. Use smaller cells, or increase points_per_cell.",
             listed(&paths),
             1e2 * most
         ));
@@ -150,8 +150,8 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
     let thin = |body: &Body| thinnest(body, grid).filter(|_| several(body));
     if let Some((axis, part)) = bodies.iter().filter_map(thin).min_by(|a, b| a.1.total_cmp(&b.1)) {
         report.warn(format!(
-            "W0212: {}: the body is {part:.2} cells thick along {}, less than the spacing of material points. Its \
-             bending and the strains next to it are unreliable. Use smaller cells there.",
+            "W0212: {}: the body is only {part:.2} cells thick along {}, less than the spacing of material points. \
+             Bending and strains of the body and beside it are unreliable. Use smaller cells at the body.",
             listed(&paths(&|body| thin(body).is_some())),
             ["x", "y", "z"][axis]
         ));
@@ -198,7 +198,7 @@ fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<u
         let name_as_given = shortened(name);
         let message = match nearest(name, named.iter().map(|(known, _)| known.as_str())) {
             Some(known) => format!("E0220: [material.{name_as_given}] is not defined. Did you mean `{known}`?"),
-            None => format!("E0220: [material.{name_as_given}] is not defined. Define it, or correct the name."),
+            None => format!("E0220: [material.{name_as_given}] is not defined. Add this table, or correct the name."),
         };
         record.consequence("material", message, &["material"], report);
     }
@@ -215,8 +215,8 @@ pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
     let both = |(i, j): &(usize, usize)| overlap(&bodies[*i], &bodies[*j], grid, &mut work) && together(*i, *j);
     if let Some((i, j)) = pairs.find(both) {
         report.warn(format!(
-            "W0213: body.{i} and body.{j} overlap. The soil in the overlap is counted twice. Move one of them, or \
-             `subtract` the overlap from it."
+            "W0213: body.{i} and body.{j} overlap, so the soil in the overlap is counted twice. Move one of the \
+             bodies, or cut the overlap out of one with `subtract`."
         ));
     }
 }

@@ -237,14 +237,14 @@ fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability
     if let Some(much) = along.into_iter().find(|k| *k > MOST_PERMEABLE) {
         let path = record.path_of("permeability");
         report.warn(format!(
-            "W0109: {path}: {much} m/s is more permeable than gravel (up to {MOST_PERMEABLE} m/s), so the soil \
-             would drain at once. Check the unit, and write it: \"1e-5 m/s\"."
+            "W0109: {path}: a permeability of {much} m/s is above that of gravel (up to {MOST_PERMEABLE} m/s), so the \
+             soil would drain at once. Check the value, and write its unit, such as \"1e-5 m/s\"."
         ));
     }
     if let Some(little) = along.into_iter().find(|k| *k > 0.0 && *k < LEAST_PERMEABLE) {
         report.warn(format!(
-            "W0109: {}: {little:e} m/s is less than that of bentonite (1e-14 m/s). If it is an intrinsic permeability in m2, \
-             multiply it by 1e7 1/(m s).",
+            "W0109: {}: a permeability of {little:e} m/s is below that of bentonite (1e-14 m/s). If the value is an \
+             intrinsic permeability in m2, multiply the value by 1e7 to convert it to m/s.",
             record.path_of("permeability")
         ));
     }

@@ -22,12 +22,14 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         if case.shaking.iter().all(|(_, ground)| *ground == [0.0; 3]) {
             refuse(
-                "E0245: there is no [shaking], so nothing moves the free field. Add it, or use \"absorbing\".".into(),
+                "E0245: the case has no [shaking], or a zero one, so nothing moves the free field. Add [shaking], or \
+                 use \"absorbing\"."
+                    .into(),
             );
         }
         if !matches!(case.boundary[1][0], Support::Fixed | Support::Absorbing) || case.boundary[1][1] != Support::Free {
             refuse(
-                "E0246: a free field needs a base and a free surface. Set boundary.bottom = \"fixed\" or \
+                "E0246: a free field needs a supported bottom and a free top. Set boundary.bottom = \"fixed\" or \
                  \"absorbing\", and boundary.top = \"free\"."
                     .into(),
             );
@@ -42,13 +44,15 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         let moves = |body: &Body| body.velocity.is_some_and(|v| v != [0.0; 3]) || body.spin.is_some();
         if case.bodies.iter().any(|body| in_column(body) && moves(body)) {
             refuse(
-                "E0248: a body at this free field has an initial velocity or spin. Delete the velocity or spin.".into(),
+                "E0248: a body in the outermost cells at this face, which represent the free field, has an initial \
+                 velocity or spin. Delete the velocity or spin."
+                    .into(),
             );
         }
         if let Some(what) = acts_between(case, (lower, higher)) {
             refuse(format!(
-                "E0248: {what} acts on the outermost cells, which represent the free field. Keep it more than a cell \
-                 away from this face at all times."
+                "E0248: {what} acts on the outermost cells at this face, which represent the free field. Keep {what} \
+                 more than a cell away from this face at all times."
             ));
         }
     }

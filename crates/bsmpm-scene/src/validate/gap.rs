@@ -43,8 +43,8 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
     let more = if narrow.len() > 1 { format!(" (and {} more pairs)", narrow.len() - 1) } else { String::new() };
     let [one, other] = gap.bodies;
     report.warn(format!(
-        "W0228: body.{} and body.{}{more} are {} m apart ({:.2} cells), so they act on each other before they \
-         touch. Use cells smaller than the gap, or close it.",
+        "W0228: body.{} and body.{}{more} are {} m apart ({:.2} cells), so the bodies push on each other before they \
+         touch. Use cells smaller than the gap, or close the gap.",
         one.min(other),
         one.max(other),
         brief(gap.distance),

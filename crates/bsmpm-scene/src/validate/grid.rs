@@ -64,8 +64,8 @@ fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()
         if cell < least {
             let key = if grid.gives("knots") { "knots" } else { "cell" };
             let message = format!(
-                "E0205: the shortest cell along {name} is {cell:e} m (at least {least:e} m). Correct the cell size or \
-                 the breakpoints."
+                "E0205: the shortest cell along {name} is {cell:e} m long, but must be at least {least:e} m. Correct \
+                 the cell size or the breakpoints."
             );
             grid.error(key, message, report);
             return None;
@@ -84,7 +84,7 @@ fn graded(
     let knots = grid.record("knots")?;
     if knots.gives("z") != (dims == 3) {
         let message = match dims {
-            3 => "E0206: a 3-D grid needs breakpoints along z. Add knots.z.",
+            3 => "E0206: a 3-D grid needs breakpoints (the ends of the cells) along z, too. Add knots.z.",
             _ => "E0207: a 2-D grid has no z axis. Delete knots.z, or use geometry = \"3d\".",
         };
         knots.error("z", message, report);
@@ -95,15 +95,16 @@ fn graded(
         let copies: Vec<&[f64]> = knots.numbers(name)?.chunk_by(|a, b| a == b).collect();
         let breakpoints: Vec<f64> = copies.iter().map(|copies| copies[0]).collect();
         if breakpoints.len() < 2 || breakpoints.windows(2).any(|pair| pair[1] <= pair[0]) {
-            let message = "E0208: breakpoints must not decrease, and at least two must differ. Sort them, and add \
-                           those that are missing.";
+            let message = "E0208: the breakpoints (the ends of the cells) are not in increasing order, or fewer than \
+                           two differ. Sort the breakpoints, and add missing ones.";
             knots.error(name, message, report);
             return None;
         }
         let (last, most) = (copies.len() - 1, |i: usize| if i == 0 || i == copies.len() - 1 { 1 } else { order });
         if let Some(torn) = (0..=last).find(|&i| copies[i].len() > most(i)) {
             let message = format!(
-                "E0209: the breakpoint {} is listed {} times (at most {}). Delete the repetitions.",
+                "E0209: the breakpoint {} is given {} times, but at most {} times is allowed. Delete some of the \
+                 repetitions.",
                 breakpoints[torn],
                 copies[torn].len(),
                 most(torn)
@@ -116,8 +117,8 @@ fn graded(
         for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
             if let Some(corner) = grid.vector(key).filter(|corner| corner[number] != end) {
                 let message = format!(
-                    "E0210: {name} = {} m differs from the outermost breakpoint along {name}, {end} m. Delete `{key}`, \
-                     or make both equal.",
+                    "E0210: the corner of the grid at {name} = {} m differs from the outermost breakpoint at {name} = \
+                     {end} m. Delete `{key}`, or make both equal.",
                     corner[number]
                 );
                 grid.error(key, message, report);
@@ -136,8 +137,8 @@ fn graded(
 fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut Report<'_>) -> Option<Vec<GridAxis>> {
     for key in ["lower", "upper"] {
         if !grid.gives(key) {
-            let message =
-                "E0211: a grid with `cell` needs both corners, and this one is missing. Add it, or give knots.";
+            let message = "E0211: this corner of the grid is missing: a grid with `cell` needs both `lower` and \
+                           `upper`. Add the corner, or give `knots` in place of `cell`.";
             report.error(grid.origin, &grid.path_of(key), message);
         }
     }
@@ -197,8 +198,8 @@ impl Faces<'_> {
             }
             _ => {
                 let message = format!(
-                    "E0212: the grid has {exact} cells along {name}, not a whole number, and neither face there is \
-                     free to move. Use for example cell = {}.",
+                    "E0212: the grid has {exact} cells along {name}, not a whole number, and cannot grow, because no \
+                     face along {name} is \"free\". Use for example cell = {}.",
                     (upper - lower) / exact.round().max(1.0)
                 );
                 self.grid.error("cell", message, report);
@@ -215,8 +216,8 @@ fn warn_of_rounding(spec: &GridSpec, report: &mut Report<'_>) {
         let spacing = far * f64::EPSILON;
         if spacing > 1e-6 * axis.shortest() {
             report.warn(format!(
-                "W0208: grid: coordinates of {far:e} m along {name} are exact to {spacing:.1e} m only, more than 1e-6 \
-                 of a cell. Move the origin closer to the bodies."
+                "W0208: grid: coordinates of {far:e} m along {name} have rounding errors of {spacing:.1e} m, more \
+                 than 1e-6 of a cell. Shift all coordinates closer to 0."
             ));
         }
     }

@@ -21,14 +21,14 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         let held = holds_at_rest(case, axis, None);
         for what in loads(case, axis).filter(|_| !held).chain(rigid(case, root, axis)) {
             report.warn(format!(
-                "W0231: {what}: this load remains at the end, and only absorbing boundaries support the ground along \
-                 {name}. The ground drifts. Fix a distant face, or remove the load before the end."
+                "W0231: {what}: this load remains at the end. Along {name} only absorbing boundaries support the \
+                 ground, so the ground drifts. Fix a distant face, or remove the load before the end."
             ));
         }
         for what in strips(case, axis) {
             report.warn(format!(
-                "W0231: {what}: this displacement remains at the end, and only absorbing boundaries support the ground \
-                 along {name}. The ground drifts with it. Fix a distant face, or reverse the motion."
+                "W0231: {what}: this displacement remains at the end. Along {name} only absorbing boundaries support \
+                 the ground, so the ground drifts. Fix a distant face, or let the displacement return to 0."
             ));
         }
     }

@@ -52,8 +52,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
             let Some(exit) = motion.exit(case, face) else { continue };
             let side = face.side(case.geometry);
             report.warn(format!(
-                "W0230: {}: the body moves out of the grid at the free face {side} at about t = {:.3} s, and the run \
-                 would end there. Enlarge the grid by {:.3} m, or support that face.",
+                "W0230: {}: the body moves out of the grid through the free face {side} at about t = {:.3} s, so the \
+                 run would stop then. Enlarge the grid at this face by {:.3} m, or support the face.",
                 record.path, exit.time, exit.overshoot
             ));
         }

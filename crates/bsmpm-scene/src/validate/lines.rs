@@ -64,12 +64,12 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
         let place = place_of(case, (*axis, *line));
         report.warn(match chosen {
             C0Lines::None => format!(
-                "W0216: grid.c0_lines: there is no C0 line at {place} ({reason}). Stresses within three cells can be \
-                 off by tens of per cent. Use \"automatic\"."
+                "W0216: grid.c0_lines: there is no C0 line (where strains may jump) at {place} ({reason}). Stresses \
+                 within three cells of this place can be off by tens of per cent. Use \"automatic\"."
             ),
             C0Lines::Automatic => format!(
-                "W0217: grid.c0_lines: there is no C0 line at {place} ({reason}), because pore water flows. Stresses \
-                 within three cells can be off by tens of per cent. Use smaller cells there."
+                "W0217: grid.c0_lines: because pore water flows, there is no C0 line (where strains may jump) at \
+                 {place} ({reason}). Stresses near this place can be off by tens of per cent. Use smaller cells there."
             ),
         });
     }
@@ -77,8 +77,8 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     let jumps = crossed.or(placed.first().map(|(place, _)| *place));
     if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, record)) {
         report.warn(format!(
-            "W0218: grid.c0_lines: the undrained material.{name} has friction, and its strength is inaccurate at the \
-             C0 line {}. Loads can be off by 4 %. Compare a run with friction_angle = 0.",
+            "W0218: grid.c0_lines: at the C0 line {} the undrained strength of material.{name} is inaccurate, because \
+             this material has friction. Loads can be off by 4 %. Compare a run with friction_angle = 0.",
             place_of(case, (axis, line))
         ));
     }
@@ -91,8 +91,8 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     }
     if let Some(line) = crossed.filter(|_| case.flow.is_some()) {
         report.warn(format!(
-            "W0219: grid.c0_lines: saturated soil that moves across the C0 line at {} loses volume. Loads become too \
-             small. Increase points_per_cell, or use \"none\".",
+            "W0219: grid.c0_lines: saturated soil that moves across the C0 line at {} loses volume, so loads become \
+             too small. Increase points_per_cell, or set grid.c0_lines = \"none\".",
             place_of(case, line)
         ));
     }
@@ -218,15 +218,15 @@ fn doubt(
     if on_line {
         let stiffer = || {
             format!(
-                "W0220: the stiffness of material.{a} and material.{b} differs by a factor of {} (verified: \
-                 {SHOWN}). Stresses in the stiffer one are wrong after yielding. Reduce its `young`.",
+                "W0220: the stiffness of material.{a} and material.{b} differs by a factor of {} ({SHOWN} was \
+                 verified). Stresses in the stiffer material are wrong after yielding. Reduce the larger `young`.",
                 brief(moduli)
             )
         };
         let denser = || {
             format!(
-                "W0221: the density of material.{a} and material.{b} differs by a factor of {}. Stresses along \
-                 their interface at {at:?} are inaccurate in the adjacent cells. Use smaller cells.",
+                "W0221: the density of material.{a} and material.{b} differs by a factor of {}. Stresses in the cells \
+                 next to their interface at {at:?} m are inaccurate. Use smaller cells at the interface.",
                 brief(densities)
             )
         };
@@ -237,8 +237,8 @@ fn doubt(
     }
     let unfitted = || {
         format!(
-            "W0222: the interface of material.{a} and material.{b} lies inside cells, first at {at:?}. Stresses within \
-             three cells are off by tens of per cent. Put a grid line on it (grid.knots)."
+            "W0222: the interface of material.{a} and material.{b} is not on a grid line, first at {at:?} m. Stresses \
+             within three cells are off by tens of per cent. Put a grid line there (grid.knots)."
         )
     };
     (moduli.max(densities) >= UNLIKE).then(unfitted)

@@ -67,7 +67,8 @@ pub(super) fn circle(
     let inside = |at: &[f64; 2]| (0..2).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis]);
     let places: Vec<[f64; 2]> = ring(center, radius).filter(inside).collect();
     if places.is_empty() {
-        let message = "E0201: no part of the circle is inside the grid. Move it into the grid, or enlarge the grid.";
+        let message =
+            "E0201: no part of the circle is inside the grid. Move the circle into the grid, or enlarge the grid.";
         record.error("circle", message, report);
         return None;
     }

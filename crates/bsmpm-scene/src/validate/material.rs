@@ -223,8 +223,8 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
     };
     if !(100.0..=30_000.0).contains(&density) {
         report.warn(format!(
-            "W0108: {}: {density:.3} kg/m3, a unit weight of {:.3} kN/m3, is not that of soil or rock (5 to 30 kN/m3). Check \
-             the unit, and write it: unit_weight = \"20 kN/m3\".",
+            "W0108: {}: a density of {density:.3} kg/m3 (unit weight {:.3} kN/m3) is unusual: soil and rock have 5 to \
+             30 kN/m3. Check the value, and write its unit, such as unit_weight = \"20 kN/m3\".",
             record.path,
             density * STANDARD_GRAVITY * 1e-3
         ));

@@ -88,38 +88,38 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
     match meeting.other {
         Other::Rigid(_) => {
             let message = format!(
-                "E0251: `{other}` continues the surface of `{name}` and moves differently, so the soil cannot follow \
-                 both. Use [[prescribed]] or [[rigid]] for both, or leave a cell between them."
+                "E0251: `{other}` and `{name}` are adjacent in one surface and move differently. The soil cannot \
+                 follow both. Use [[prescribed]] or [[rigid]] for both, or leave a cell between the two."
             );
             record.error("from", message, report);
         }
         Other::Corner { apart, .. } => {
             let message = format!(
-                "E0251: `{name}` and `{other}` share a corner, and prescribe displacements that differ by {} m \
-                 there. Use components = \"normal\" in both, or leave a cell between them.",
+                "E0251: `{name}` and `{other}` share a corner, where their displacements differ by {} m. The soil \
+                 cannot follow both. Use components = \"normal\" in both, or leave a cell between the two.",
                 brief(apart)
             );
             record.error("from", message, report);
         }
         Other::Strip { act_together: false, .. } => {
             let message = format!(
-                "E0251: `{other}` meets `{name}`, moves differently, and begins to act at another time. The soil \
-                 cannot follow both. Apply both in the same stage, or leave a cell between them."
+                "E0251: `{other}` and `{name}` are adjacent, move differently and begin to act in different stages. \
+                 The soil cannot follow both. Apply both in the same stage, or leave a cell between the two."
             );
             record.error("from", message, report);
         }
         Other::Strip { sliding, edge, .. } if sliding > ROUNDING * edge => {
             let message = format!(
-                "E0251: `{name}` and `{other}` meet, and their tangential displacements differ by {} m. The soil \
-                 cannot follow both. Use components = \"normal\" in one, or leave a cell between them.",
+                "E0251: `{name}` and `{other}` are adjacent, and their tangential displacements differ by {} m. The \
+                 soil cannot follow both. Use components = \"normal\" in one, or leave a cell between the two.",
                 brief(sliding)
             );
             record.error("from", message, report);
         }
         Other::Strip { along, edge, .. } if along > ALONG * edge => {
             let message = format!(
-                "E0251: `{name}` and `{other}` meet and move differently, one of them {along:.3} m along its own \
-                 surface (at most {:.3} m). The soil cannot follow both. Leave a cell between them.",
+                "E0251: `{name}` and `{other}` are adjacent, and one of the two slides {along:.3} m along its surface \
+                 (at most {:.3} m). The soil cannot follow both. Leave a cell between the two.",
                 ALONG * edge
             );
             record.error("from", message, report);
@@ -131,8 +131,8 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
             report.note(&name, &value, reason);
             if apart > APART * edge {
                 report.warn(format!(
-                    "W0233: `{name}` and `{other}` meet, and their displacements differ by {apart:.3} m ({:.1} cells). \
-                     The soil between them is sheared within one cell. Reduce the displacement.",
+                    "W0233: `{name}` and `{other}` are adjacent, and their displacements differ by {apart:.3} m \
+                     ({:.1} cells). Stresses in the cell between the two are inaccurate. Reduce the difference.",
                     apart / edge
                 ));
             }

@@ -27,8 +27,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         };
         if found.cells < found.least {
             report.warn(format!(
-                "W0227: {}: the hole or notch of {} m is {:.1} cells across (at least {} needed). Stresses at its edge \
-                 are off by more than 10 %. Use smaller cells there.",
+                "W0227: {}: the hole or notch, {} m wide, has {:.1} cells across, but needs at least {}. Stresses at \
+                 its edge are off by more than 10 %. Use smaller cells there.",
                 found.path,
                 found.brief_width(),
                 found.cells,

@@ -131,8 +131,8 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
         return;
     }
     let message = format!(
-        "E0270: no support holds the bodies along {}, and a quasi-static analysis has no solution. Set a side of [boundary] \
-         that a body reaches to \"fixed\" or \"roller\".",
+        "E0270: no support holds the bodies along {}, so a quasi-static analysis has no solution. In [boundary], set \
+         a face that a body reaches to \"fixed\" or \"roller\".",
         free.join(" and ")
     );
     report.error(record.place("boundary"), "boundary", message);

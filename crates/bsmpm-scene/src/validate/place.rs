@@ -38,7 +38,7 @@ impl fmt::Display for Outside {
 
 impl From<Outside> for String {
     fn from(outside: Outside) -> Self {
-        format!("E0201: {outside}. Move it into the grid, or enlarge the grid.")
+        format!("E0201: {outside}. Correct the coordinate, or enlarge the grid.")
     }
 }
 

@@ -191,8 +191,8 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
 /// Of a box without extent along some axis.
 fn empty_box(lower: &[f64], upper: &[f64]) -> String {
     format!(
-        "E0203: the corner {upper:?} is not above lower = {lower:?} along each axis, so the box is empty. Exchange or \
-         correct the corners."
+        "E0203: the upper corner {upper:?} m is not above the lower corner {lower:?} m along each axis, so the box is \
+         empty. Exchange or correct the corners."
     )
 }
 
@@ -216,7 +216,8 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     let row = |k: usize| rows[k].origin;
     let (origin, message): (Origin, String) = match fault {
         PolygonFault::TooFew => {
-            let message = format!("E0222: the polygon has {} corners (at least 3). Add corners.", corners.len());
+            let message =
+                format!("E0222: the polygon has {} corners, but needs at least 3. Add corners.", corners.len());
             (record.place("polygon"), message)
         }
         PolygonFault::Repeated(one, other) => {

@@ -39,9 +39,13 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
         ("surface", sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>()))
     };
     let at_bodies = |all: Vec<Triangle>| match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
-        Some(at) => Err(format!("E0233: no body lies at {at:.3?} at the start. Move the surface to that of a body.")),
+        Some(at) => Err(format!(
+            "E0233: at the start of the analysis no body lies at {at:.3?} m. Move the loaded surface to the surface \
+             of a body."
+        )),
         None if all.is_empty() => {
-            Err("E0201: no part of the sphere is inside the grid. Move it into the grid, or enlarge the grid.".into())
+            Err("E0201: no part of the sphere is inside the grid. Move the sphere into the grid, or enlarge the grid."
+                .into())
         }
         None => Ok(all),
     };
@@ -53,8 +57,8 @@ fn countable(area: f64, spacing: f64) -> Result<(), String> {
     let squares = area / spacing.powi(2);
     let message = || {
         format!(
-            "E0216: the loaded surface covers {squares:.0} squares of the point spacing (at most {LARGEST}). Use \
-             larger cells, or fewer points_per_cell."
+            "E0216: the loaded surface is so large that it needs about {squares:.0} loaded points (at most \
+             {LARGEST}). Use larger cells, or reduce points_per_cell."
         )
     };
     if squares > LARGEST { Err(message()) } else { Ok(()) }
@@ -136,16 +140,16 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
         let [from, to] = sides[0].ends;
         if sides.len() > 2 {
             return Err(format!(
-                "E0227: {} triangles share the edge from {from:?} to {to:?} (at most 2). Repair the surface with a \
-                 mesh tool.",
+                "E0227: {} triangles share the edge from {from:?} to {to:?} m, but at most 2 are allowed. Repair the \
+                 surface with a mesh tool.",
                 sides.len()
             ));
         }
         if let [one, other] = &sides[..] {
             if one.upwards == other.upwards {
                 return Err(format!(
-                    "E0227: the normals of the triangles at the edge from {from:?} to {to:?} are inconsistent. Repair \
-                     the surface with a mesh tool."
+                    "E0227: the two triangles at the edge from {from:?} to {to:?} m have normals on opposite \
+                     sides of the surface. Make the normals consistent with a mesh tool."
                 ));
             }
             let [one, other] = [one.triangle, other.triangle].map(|of| root(&mut piece, of));
@@ -155,8 +159,8 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
     match (0..all.len()).filter(|of| piece[*of] == *of).count() {
         1 => Ok(()),
         pieces => Err(format!(
-            "E0227: the surface consists of {pieces} pieces without a common edge. Weld its vertices with a mesh tool, \
-             or give each piece its own [[traction]]."
+            "E0227: the surface consists of {pieces} separate pieces. Weld their vertices with a mesh tool, or give \
+             each piece its own [[traction]]."
         )),
     }
 }
@@ -245,7 +249,7 @@ mod tests {
         let [o, x, y, z] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         assert_eq!(in_one_piece(&[[o, x, y], [o, y, z]]), Ok(()));
         let says = |all: &[Triangle]| in_one_piece(all).unwrap_err();
-        assert!(says(&[[o, x, y], [o, z, y]]).contains("are inconsistent"));
+        assert!(says(&[[o, x, y], [o, z, y]]).contains("sides of the surface"));
         assert!(says(&[[o, x, y], [o, y, z], [y, o, [1.0; 3]]]).contains("3 triangles share the edge"));
         assert!(says(&[[o, x, y], [[5.0; 3], z, [6.0, 5.0, 5.0]]]).contains("2 pieces"));
     }

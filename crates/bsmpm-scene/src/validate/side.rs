@@ -62,8 +62,8 @@ pub(super) fn of_pressures(case: &mut Case, root: &Record, report: &mut Report<'
         if let Some((t, _)) = sides.iter().find(|(_, side)| side.is_none() || *side != first) {
             let key = if record.gives("pressure_path") { "pressure_path" } else { "pressure" };
             let message = format!(
-                "E0252: at t = {t} bodies lie on both sides of the loaded surface, or on neither. The direction of the \
-                 pressure is unknown. Load a free surface."
+                "E0252: at t = {t} soil lies on both sides of the loaded surface, or on neither side. The direction \
+                 of the pressure is not defined. Move the load to a free surface."
             );
             record.error(key, message, report);
         }

@@ -26,7 +26,7 @@ pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Rep
     if from == to {
         record.error(
             "to",
-            "E0232: `from` and `to` are the same place, so the length is zero. Move one of them.",
+            "E0232: `from` and `to` are the same place, so the length is zero. Move one of the two ends.",
             report,
         );
         return None;
@@ -47,8 +47,10 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
     let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
     if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
-        let message =
-            format!("E0233: no body lies at {from:.3?} to {to:.3?} at the start. Move it to the surface of a body.");
+        let message = format!(
+            "E0233: at the start of the analysis no body lies between {from:.3?} and {to:.3?} m. Move this place \
+                 to the surface of a body."
+        );
         record.consequence(key, message, &["body"], report);
     }
 }
@@ -101,7 +103,7 @@ pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -
         if !(0..3).all(inside) || plate.area([lower, upper]) == 0.0 {
             record.error(
                 "disc",
-                "E0201: no part of the disc is inside the grid. Move it into the grid, or enlarge the grid.",
+                "E0201: no part of the disc is inside the grid. Move the disc into the grid, or enlarge the grid.",
                 report,
             );
             return None;
@@ -113,8 +115,8 @@ pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -
     let flat = (0..3).filter(|&axis| lower[axis] == upper[axis]).count();
     if flat != 1 || (0..3).any(|axis| lower[axis] > upper[axis]) {
         let message = format!(
-            "E0234: {lower:?} and {upper:?} are no corners of a rectangle. Make them equal along one axis, and upper > \
-                     lower along the others."
+            "E0234: the corners {lower:?} and {upper:?} m do not form a rectangle. Make the corners equal along one \
+             axis, and `upper` larger than `lower` along the other two."
         );
         record.error("rectangle", message, report);
         return None;
@@ -141,7 +143,10 @@ pub(super) fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report
     let (side, face) = (record.word::<Side>("face")?, face(record, around.grid?, report)?);
     let support = around.boundary?[face.axis][usize::from(face.upper)];
     if support != Support::Free {
-        let message = format!("E0236: [boundary] supports the face \"{side}\", too. Set boundary.{side} = \"free\".");
+        let message = format!(
+            "E0236: the face \"{side}\" has a support in [boundary], too, so its motion is prescribed twice. Set \
+             boundary.{side} = \"free\"."
+        );
         record.error("face", message, report);
         return None;
     }

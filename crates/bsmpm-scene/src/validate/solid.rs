@@ -27,29 +27,31 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     }
     for drain in root.records("drain").iter().chain(root.records("inflow")) {
         for key in ["from", "to", "circle", "surface"].into_iter().filter(|key| drain.gives(key)) {
-            let message = "E0225: this key belongs to 2-D cases, and this one is 3-D. Use face, rectangle = { lower, \
-                           upper } or disc.";
+            let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use `face`, rectangle = { \
+                           lower, upper } or `disc`.";
             drain.error(key, message, report);
         }
     }
     for traction in root.records("traction") {
         for key in ["from", "to", "circle"].into_iter().filter(|key| traction.gives(key)) {
-            let message = "E0225: this key belongs to 2-D cases, and this one is 3-D. Use rectangle = { lower, upper }, \
-                           disc, sphere or surface.";
+            let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use rectangle = { lower, \
+                           upper }, `disc`, `sphere` or `surface`.";
             traction.error(key, message, report);
         }
     }
     for strip in root.records("footing").iter().chain(root.records("prescribed")) {
         for key in ["from", "to"].into_iter().filter(|key| strip.gives(key)) {
-            let message =
-                "E0225: this key belongs to 2-D cases, and this one is 3-D. Use rectangle = { lower, upper } or disc.";
+            let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use rectangle = { lower, \
+                           upper } or `disc`.";
             strip.error(key, message, report);
         }
     }
     for history in root.records("history") {
         if let Some(quantity) = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of)) {
-            let message =
-                format!("E0226: the quantity \"{quantity}\" is not available in 3-D. Evaluate it from the frames.");
+            let message = format!(
+                "E0226: the quantity \"{quantity}\" is not available in 3-D. Delete this history, and evaluate \
+                     the quantity from the output frames."
+            );
             history.error("quantity", message, report);
         }
         if history.gives("at_x") {
@@ -64,14 +66,18 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
     let strips = strips.chain(root.records("drain")).chain(root.records("inflow"));
     for flat in root.records("traction").iter().chain(strips) {
         for key in ["rectangle", "disc"].into_iter().filter(|key| flat.gives(key)) {
-            flat.error(key, "E0207: this key is available in 3-D only. Use from and to, or geometry = \"3d\".", report);
+            flat.error(
+                key,
+                "E0207: this key is available in 3-D only. Use `from` and `to`, or set geometry = \"3d\".",
+                report,
+            );
         }
     }
     for traction in root.records("traction") {
         for key in ["sphere", "surface"].into_iter().filter(|key| traction.gives(key)) {
             traction.error(
                 key,
-                "E0207: this key is available in 3-D only. Use from and to, or circle, or geometry = \"3d\".",
+                "E0207: this key is available in 3-D only. Use `from` and `to`, or `circle`, or set geometry = \"3d\".",
                 report,
             );
         }
@@ -79,15 +85,15 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
     let stages = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));
     for boundary in root.record("boundary").into_iter().chain(stages) {
         for side in [Side::Front, Side::Back].into_iter().filter(|side| boundary.gives(side.word())) {
-            let message = "E0207: a 2-D grid has no such face. Delete it, or use geometry = \"3d\".";
+            let message = "E0207: a 2-D grid has no front and no back face. Delete this key, or use geometry = \"3d\".";
             boundary.error(side.word(), message, report);
         }
     }
     let shapes = root.records("body").iter().flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
     for shape in shapes.chain(root.records("rigid")) {
         for key in ["extrude", "sphere", "revolve", "terrain", "surface"].into_iter().filter(|key| shape.gives(key)) {
-            let message =
-                "E0207: this shape is available in 3-D only. Use box, polygon or circle, or geometry = \"3d\".";
+            let message = "E0207: this shape is available in 3-D only. Use `box`, `polygon` or `circle`, or set \
+                           geometry = \"3d\".";
             shape.error(key, message, report);
         }
     }
@@ -99,16 +105,16 @@ fn faces(all: &[FaceSupport], boundary: &Record, report: &mut Report<'_>) {
     for of in all.iter().filter(|of| boundary.gives(side(of).word())) {
         if !matches!(of.support, Support::Fixed | Support::Roller | Support::Free | Support::Contact | Support::Outflow)
         {
-            let message = "E0226: this support is not available in 3-D. Use fixed, roller, free, outflow or contact, \
-                           or { friction_coefficient = ... }.";
+            let message = "E0226: this support is not available in 3-D. Use one of: \"fixed\", \"roller\", \"free\", \
+                 \"outflow\", \"contact\", { friction_coefficient = ... }.";
             boundary.error(side(of).word(), message, report);
         }
     }
     let with_friction = || all.iter().filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0));
     let meets = |of: &&FaceSupport| with_friction().any(|other| other.face.axis != of.face.axis);
     if let Some(of) = with_friction().filter(|of| boundary.gives(side(of).word())).rfind(meets) {
-        let message = "E0226: friction on two faces that share an edge is not available in 3-D. Make one of them \
-                       \"contact\" or \"roller\".";
+        let message = "E0226: friction on two faces that share an edge is not available in 3-D. Set one of the two \
+                       faces to \"contact\" or \"roller\".";
         boundary.error(side(of).word(), message, report);
     }
 }
@@ -140,8 +146,8 @@ impl Case {
         let is_factored = self.geometry == Geometry::Solid && self.solver.linear_on(ranks).factor.is_some();
         let warning = || {
             format!(
-                "W0235: solver.linear: factorising {} unknowns in 3-D takes about {:.1} GB of memory. With poisson <= \
-                 0.4 use \"incomplete-cholesky\", otherwise on one rank \"spline-multigrid\".",
+                "W0235: solver.linear: the direct solution of {} unknowns needs about {:.1} GB of memory. If poisson \
+                 <= 0.4, use \"incomplete-cholesky\"; otherwise use \"spline-multigrid\" on one MPI rank.",
                 estimate.active,
                 estimate.bytes as f64 / 1e9
             )

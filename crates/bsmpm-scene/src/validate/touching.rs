@@ -28,8 +28,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for Overlap { one, other, t } in &overlaps {
         let [name, of] = [one, other].map(|number| &case.rigid[*number].name);
         let message = format!(
-            "E0249: the paths of rigid bodies `{name}` and `{of}` make them overlap at t = {t:.4}. Contact between \
-             rigid bodies is not available. Change a path, or reduce analysis.end."
+            "E0249: rigid bodies `{name}` and `{of}` overlap on their prescribed paths at t = {t:.4}. Contact between \
+             rigid bodies is not available. Change one of the paths, or reduce analysis.end."
         );
         if let Some(record) = root.records("rigid").get(*other) {
             record.error("name", message, report);
@@ -102,12 +102,13 @@ fn check_meetings(case: &Case, root: &Record, report: &mut Report<'_>) {
             let [name, of] = [one, other].map(|number| &case.rigid[number].name);
             let excess = 100.0 / cells;
             let warning = format!(
-                "W0232: rigid bodies `{name}` and `{of}` meet in one plane and move differently. Their forces are \
-                 about {excess:.0} % too large ({cells:.0} cells across). Use smaller cells, or [[prescribed]]."
+                "W0232: rigid bodies `{name}` and `{of}` lie side by side and move differently. Their forces are \
+                 about {excess:.0} % too large ({cells:.0} cells across). Use smaller cells, or [[prescribed]] for \
+                 both."
             );
             let error = format!(
-                "E0250: rigid bodies `{name}` and `{of}` meet in one plane and move differently. Their forces would be \
-                 {excess:.0} % too large ({cells:.0} cells across). Use smaller cells, or [[prescribed]]."
+                "E0250: rigid bodies `{name}` and `{of}` lie side by side and move differently. Their forces would be \
+                 {excess:.0} % too large ({cells:.0} cells across). Use smaller cells, or [[prescribed]] for both."
             );
             match root.records("rigid").get(other) {
                 Some(record) if cells < FEWEST_CELLS => record.error("name", error, report),

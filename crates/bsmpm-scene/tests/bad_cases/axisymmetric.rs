@@ -37,19 +37,24 @@ pub const AXISYMMETRIC: &[Row] = &[
     row("displacement = [0.0, -0.1]", "displacement = [0.1, -0.1]", "rigid.0.displacement", "x is the radius"),
     row("displacement = [0.0, -0.1]", "rotation = [[0.1, 0.1]]", "rigid.0.rotation", "E0242"),
     row("displacement = [0.0, -0.1]", "free = [\"x\"]\nmass = 10", "rigid.0.free", "E0242"),
-    row("quantity = \"mass\"", "quantity = \"angular-momentum\"", "history.0.quantity", "has no \"angular-momentum\""),
-    row("quantity = \"reaction\"", "quantity = \"moment\"", "history.1.quantity", "has no \"moment\""),
+    row(
+        "quantity = \"mass\"",
+        "quantity = \"angular-momentum\"",
+        "history.0.quantity",
+        "quantity \"angular-momentum\" is zero",
+    ),
+    row("quantity = \"reaction\"", "quantity = \"moment\"", "history.1.quantity", "quantity \"moment\" is zero"),
     row(
         "quantity = \"mass\"",
         "quantity = \"rigid-moment\"\nrigid = \"cone\"",
         "history.0.quantity",
-        "has no \"rigid-moment\"",
+        "quantity \"rigid-moment\" is zero",
     ),
     row(
         "quantity = \"mass\"",
         "quantity = \"rigid-rotation\"\nrigid = \"cone\"",
         "history.0.quantity",
-        "has no \"rigid-rotation\"",
+        "quantity \"rigid-rotation\" is zero",
     ),
     row(
         "quantity = \"mass\"",

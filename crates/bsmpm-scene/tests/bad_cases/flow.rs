@@ -113,7 +113,7 @@ pub const FLOW: &[Row] = &[
         "E0638",
     )
     .down(3),
-    row("dt     = \"1 h\"", "dt     = 0.1", "analysis.dt", "6.312e9 steps until the end (at most 1e9)"),
+    row("dt     = \"1 h\"", "dt     = 0.1", "analysis.dt", "6.312e9 steps until the end of the analysis (at most 1e9)"),
     row(
         "[solver]",
         "[[stage]]\nat = \"1 day\"\nboundary = { left = \"fixed\" }\n[solver]",

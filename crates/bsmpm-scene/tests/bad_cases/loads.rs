@@ -10,7 +10,7 @@ const CIRCLE: &str = "circle = { centre = [0.5, 2.0], radius = 0.4 }";
 
 /// Polygons, circles and what is cut out.
 pub const SHAPES: &[Row] = &[
-    row(POLYGON, "polygon = [[2.5, 1.5], [3.5, 1.5]]", "body.3.polygon", "has 2 corners (at least 3)"),
+    row(POLYGON, "polygon = [[2.5, 1.5], [3.5, 1.5]]", "body.3.polygon", "has 2 corners, but needs at least 3"),
     row(POLYGON, "polygon = []", "body.3.polygon", "0 corners"),
     row(POLYGON, "polygon = [1, 2, 3]", "body.3.polygon", "found 1"),
     row(POLYGON, "polygon = [[1, 2], [1, 2, 3], [2, 2]]", "body.3.polygon", "found a list of 3"),
@@ -64,7 +64,7 @@ pub const SHAPES: &[Row] = &[
     ),
     row("{ box = { lower = [3.0, 1.5], upper = [3.25, 1.75] } }", "{}", "body.3.subtract.1", "none of the keys box"),
     row("{ box = { lower = [3.0, 1.5], upper = [3.25, 1.75] } }", "5", "body.3.subtract.1", "expected a table"),
-    row("upper = [3.25, 1.75]", "upper = [2.25, 1.75]", "body.3.subtract.1.box.upper", "is not above lower"),
+    row("upper = [3.25, 1.75]", "upper = [2.25, 1.75]", "body.3.subtract.1.box.upper", "is not above the lower corner"),
     row("lower = [3.0, 1.5], upper = [3.25, 1.75]", "lower = [0, 0], upper = [4, 3]", "body.3.polygon", "E0219").up(1),
 ];
 

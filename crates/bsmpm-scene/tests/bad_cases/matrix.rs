@@ -99,7 +99,7 @@ const MATRIX: &[Input] = &[
                 "upper = [4.0, 1.0] }",
                 "upper = [0.0, 1.0] }",
                 "body.0.box.upper",
-                "is not above lower = [0.0, 0.0] along each axis",
+                "is not above the lower corner [0.0, 0.0] m along each axis",
             ),
             row("upper = [4.0, 1.0] }", "upper = [4.0, 1e-12] }", "body.0.box.upper", "E0219"),
             row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "(radius > 0"),
@@ -132,7 +132,8 @@ const MATRIX: &[Input] = &[
                 "[0.5, \"50 cm\"]",
                 "[0.5, 0.7]",
                 "grid.cell",
-                "along y, not a whole number, and neither face there is free to move. Use for example cell = 0.75",
+                "along y, not a whole number, and cannot grow, because no face along y is \"free\". Use for example \
+                 cell = 0.75",
             ),
             row("cell  = [0.5, \"50 cm\"]", "cell = [4, 3]", "footing.to", "E0235").down(76),
             row("upper = [4.0, 3.0]", "upper = [4.0, 0.0]", "grid.upper", "E0203"),
@@ -198,7 +199,7 @@ const MATRIX: &[Input] = &[
             row("\"10 ms\"", "1.5", "analysis.dt", "E0256"),
             row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "E0010"),
             row("dt   = \"10 ms\"", "steps = 1_000_000_000_000", "analysis.steps", "E0010"),
-            row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps until the end (at most 1e9)"),
+            row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps until the end of the analysis (at most 1e9)"),
             row("every  = \"0.1 s\"", "every = 0", "output.every", "E0010"),
             row("times  = [\"0.25 s\", 0.75]", "times = [1e-9]", "output.times", "E0664"),
             row("at       = \"0.5 s\"", "at = 1e-9", "check.0.at", "E0664"),
@@ -254,7 +255,7 @@ const MATRIX: &[Input] = &[
         ],
         taken: &[
             ("-9.81]", "-1e12]", ""),
-            ("density  = \"2 t/m3\"", "density = 1e9", "W0108: material.sand: 1000000000.000 kg/m3"),
+            ("density  = \"2 t/m3\"", "density = 1e9", "W0108: material.sand: a density of 1000000000.000 kg/m3"),
         ],
         ..NONE
     },
@@ -264,13 +265,13 @@ const MATRIX: &[Input] = &[
             "density  = \"2 t/m3\"",
             "unit_weight = 2e4\ndensity = 2000",
             "material.sand.density",
-            "`unit_weight` is given too",
+            "`unit_weight` and `density` are both given",
         )
         .down(1)],
         taken: &[
-            (YOUNG, "20", "W0101: material.sand.young: 20 Pa is 0.02 kPa"),
+            (YOUNG, "20", "W0101: material.sand.young: a modulus of 20 Pa (0.02 kPa)"),
             (YOUNG, "\"20000 GPa\"", "W0302: material.sand: "),
-            ("\"18 kN/m3\"", "18", "W0108: material.clay: 1.835 kg/m3, a unit weight of 0.018 kN/m3"),
+            ("\"18 kN/m3\"", "18", "W0108: material.clay: a density of 1.835 kg/m3 (unit weight 0.018 kN/m3)"),
         ],
         ..NONE
     },
@@ -315,7 +316,7 @@ const MATRIX: &[Input] = &[
                 "strain_yy = -0.01\n",
                 "strain_yy = -0.01\nstress_yy = 0\n",
                 "element.mixed.stage.0.stress_yy",
-                "`strain_yy` is given too",
+                "`strain_yy` and `stress_yy` are both given",
             )
             .down(1),
         ],

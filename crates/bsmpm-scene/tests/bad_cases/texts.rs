@@ -24,10 +24,10 @@ fn i05_i06_no_text_of_a_case() {
     only(b"# nothing but a comment\n", "the file is empty");
     only(&utf16(STATIC, true), "UTF-16");
     only(&utf16(STATIC, false), "UTF-16");
-    only(&utf16(STATIC, true)[2..], "a NUL byte");
-    only(b"\x7fELF\x02\x01\x00", "line 1 has a NUL byte");
-    only(b"title = \"a\"\ngeometry = \"\xff\"", "line 2 is not UTF-8");
-    only(&vec![b'#'; MAX_BYTES + 1], "has more than 16 MiB");
+    only(&utf16(STATIC, true)[2..], "a zero byte");
+    only(b"\x7fELF\x02\x01\x00", "line 1 has a zero byte");
+    only(b"title = \"a\"\ngeometry = \"\xff\"", "line 2 has characters that are not UTF-8");
+    only(&vec![b'#'; MAX_BYTES + 1], "is larger than 16 MiB");
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn an_error_reads_well() {
     let error = &refuse(text.as_bytes())[0];
     let line = 1 + text[..text.find("0.6").unwrap()].matches('\n').count();
     let message = "0.6 is outside the allowed range (-1 < poisson < 0.5): at 0.5 the material is incompressible and \
-    its elastic stiffness singular.";
+    its elastic stiffness singular. Correct the value.";
     assert_eq!(error.to_string(), format!("case.toml:{line}:15: error E0010: material.clay.poisson: {message}"));
     let block = format!("{error:#}");
     let lines: Vec<&str> = block.lines().skip(1).collect();

@@ -8,19 +8,19 @@ pub const ROWS: &[Row] = &[
         number: "1",
         what: "cohesion in Pa for kPa",
         edits: &[("\"10 kPa\"", "10.0")],
-        says: Says::Warning(&["W0102", "10 Pa is 0.01 kPa", "200.000 kPa", "write \"10 kPa\""]),
+        says: Says::Warning(&["W0102", "10 Pa (0.01 kPa)", "200.000 kPa", "write \"10 kPa\""]),
     },
     Row {
         number: "2",
         what: "stiffness in Pa for kPa",
         edits: &[("\"100 MPa\"", "100000")],
-        says: Says::Warning(&["W0101", "100000 Pa is 100 kPa"]),
+        says: Says::Warning(&["W0101", "100000 Pa (100 kPa)"]),
     },
     Row {
         number: "3",
         what: "friction angle in radians",
         edits: &[("friction_angle = 20.0", "friction_angle = 0.349")],
-        says: Says::Warning(&["W0103", "look like radians (19.996 degrees)"]),
+        says: Says::Warning(&["W0103", "radians may be meant (19.996 degrees)"]),
     },
     Row {
         number: "4",

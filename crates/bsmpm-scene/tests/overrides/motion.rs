@@ -21,10 +21,14 @@ fn a_free_body_at_the_edge_of_the_grid_is_warned_of() {
     };
     let found = warned(0.0, "velocity = [-1.0, 0.0]", &[]);
     assert!(
-        found.len() == 1 && found[0].starts_with("W0230: body.0: the body moves out of the grid at the free face left"),
+        found.len() == 1
+            && found[0].starts_with("W0230: body.0: the body moves out of the grid through the free face left"),
         "{found:?}"
     );
-    assert!(found[0].contains("at about t = 0.064 s") && found[0].contains("Enlarge the grid by 0.138 m"), "{found:?}");
+    assert!(
+        found[0].contains("at about t = 0.064 s") && found[0].contains("Enlarge the grid at this face by 0.138 m"),
+        "{found:?}"
+    );
     assert_eq!(warned(0.2, "velocity = [-2.0, 0.0]", &[]).len(), 1);
     assert!(warned(0.0, "spin = { rate = 2.0, about = [0.5, 1.5] }", &[])[0].contains("free face left"));
     let held: &[&str] = &["boundary.left=roller"];

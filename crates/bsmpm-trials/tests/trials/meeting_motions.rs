@@ -164,9 +164,7 @@ fn strips_at_a_right_angle_and_strips_that_face_each_other_keep_their_motions() 
     }
     scratch.write("case.toml", platen("0.001", "-0.01", "1.0"));
     let output = scratch.direct(&["case.toml", "--check"]).expect(65);
-    output.says_once(
-        "`prescribed.0` and `prescribed.2` share a corner, and prescribe displacements that differ by 0.001 m",
-    );
+    output.says_once("`prescribed.0` and `prescribed.2` share a corner, where their displacements differ by 0.001 m");
 }
 
 #[test]
@@ -174,14 +172,14 @@ fn motions_that_the_rule_does_not_cover_are_refused_by_name() {
     let scratch = Scratch::with_case(&changed(TRAPDOOR, "CELL", "0.25"));
     let sideways = "prescribed.0.path=[[0.2, 0.0, 0.0], [1.0, 0.3, -0.02]]";
     let output = scratch.direct(&["case.toml", "--check", "--set", sideways]).expect(65);
-    output.says_once("`prescribed.0` and `prescribed.1` meet and move differently");
+    output.says_once("`prescribed.0` and `prescribed.1` are adjacent, and one of the two slides");
     // Both hold the soil along the plane: a strip that slides by 0.04 cells had up to twice its limit load, one that
     // slides by 0.16 cells a hundred times as much.
     let rough = changed(&changed(TRAPDOOR, "CELL", "0.25"), "components = \"normal\"\n", "");
     scratch.write("rough.toml", rough);
     let sliding = "prescribed.0.path=[[0.2, 0.0, 0.0], [1.0, 0.01, 0.0]]";
     let output = scratch.direct(&["rough.toml", "--check", "--set", sliding]).expect(65);
-    output.says_once("`prescribed.0` and `prescribed.1` meet, and their tangential displacements differ");
+    output.says_once("`prescribed.0` and `prescribed.1` are adjacent, and their tangential displacements differ");
     scratch.direct(&["case.toml", "--check", "--set", sliding]).expect(0);
     let rigid = "\n[[rigid]]\nname = \"block\"\nfriction_coefficient = 0.0\npolygon = [[1.0, -0.5], [6.0, -0.5], [6.0, 0.0], [1.0, 0.0]]\n";
     let text = changed(TRAPDOOR, "CELL", "0.25");
@@ -190,7 +188,7 @@ fn motions_that_the_rule_does_not_cover_are_refused_by_name() {
     let (rest, _) = rest.split_once("[[history]]\nquantity = \"reaction\"\nof = \"floor\"").expect("its history");
     scratch.write("rigid.toml", door.to_owned() + rigid + rest);
     let output = scratch.direct(&["rigid.toml", "--check"]).expect(65);
-    output.says_once("`rigid.0` continues the surface of `prescribed.0` and moves differently");
+    output.says_once("`rigid.0` and `prescribed.0` are adjacent in one surface and move differently");
 }
 
 /// The door and the floor as rigid bodies: N = 2.135 for 1.95 to 2 on 12 cells across the door, 2.24 on 8.
@@ -206,7 +204,7 @@ fn rigid_bodies_that_meet_in_one_plane_are_warned_of_with_the_error_and_refused_
                   [[history]]\nquantity = \"rigid-force\"\nrigid = \"door\"\nname = \"door\"\n";
     let case = format!("{before}{bodies}[stabilisation]{method}");
     let scratch = Scratch::with_case(&case);
-    let warning = "warning W0232: rigid bodies `door` and `floor` meet in one plane and move differently. Their forces \
+    let warning = "warning W0232: rigid bodies `door` and `floor` lie side by side and move differently. Their forces \
                    are about 8 % too large (12 cells across)";
     let refused = scratch.direct(&["case.toml", "--check", "--set", "grid.cell=0.25"]).expect(65);
     refused.says_once("error E0250: rigid.1.name: rigid bodies `door` and `floor`");
@@ -217,5 +215,5 @@ fn rigid_bodies_that_meet_in_one_plane_are_warned_of_with_the_error_and_refused_
     assert!((found / 2.0 - 1.067).abs() < 0.02, "{found}");
     // Bodies that move as one have nothing to warn of.
     scratch.write("case.toml", changed(&case, "path = [[0.2, 0.0, 0.0], [1.0, 0.0, -0.02]]\n", ""));
-    assert!(!scratch.direct(&["case.toml", "--check"]).expect(0).stderr.contains("meet in one plane"));
+    assert!(!scratch.direct(&["case.toml", "--check"]).expect(0).stderr.contains("lie side by side"));
 }

@@ -135,7 +135,7 @@ fn too_few_cells_across_a_hole_are_reported() {
     let scratch = Scratch::with_case(PLATE);
     let check = scratch.direct(&["case.toml", "--check", "--set", "grid.cell=0.5"]).expect(0);
     assert!(check.stdout.contains("hole or notch    2.0 cells across body.0.subtract.0"), "{}", check.stdout);
-    let warning = "W0227: body.0.subtract.0: the hole or notch of 1 m is 2.0 cells across (at least 8 needed)";
+    let warning = "W0227: body.0.subtract.0: the hole or notch, 1 m wide, has 2.0 cells across, but needs at least 8";
     assert!(check.stdout.contains(warning), "{}", check.stdout);
     let log = scratch.mpirun(2, &["case.toml", "--set", "grid.cell=0.5"]).expect(0).stderr;
     assert!(log.contains(warning) && log.contains("warning I0024: "), "{log}");

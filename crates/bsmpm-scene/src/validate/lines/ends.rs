@@ -132,8 +132,8 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
 /// Warns that a round rim follows no grid line.
 fn doubt_rim(name: &str, found: &mut FoundLine) {
     let doubt = format!(
-        "W0224: {name} has a round edge inside cells. Up to a cell more than its radius is loaded, and its force is \
-         too large. Compare runs with two cell sizes."
+        "W0224: the edge of {name} is round, so no grid line follows it. Soil up to a cell beyond the edge is loaded, \
+         too, and the force is too large. Compare runs with two cell sizes."
     );
     found.doubts.insert(name.to_owned(), doubt);
 }
@@ -249,8 +249,8 @@ fn rims(case: &Case, rigid: &Rigid, about: [f64; 2], corners: &[[f64; 2]], found
 /// Warns that the end of something lies inside a cell.
 fn inside_cell(name: &str, end: &str, axis: usize, at: f64) -> String {
     format!(
-        "W0225: the {end} of {name} at {} = {at} m lies inside a cell. Up to a cell more of soil is loaded, and the \
-         force is too large. Put a grid line there (grid.cell or grid.knots).",
+        "W0225: the {end} of {name} at {} = {at} m is not on a grid line. Soil up to a cell beyond it is loaded, too, \
+         so the force is too large. Put a grid line there (grid.cell or grid.knots).",
         NAMES[axis]
     )
 }
@@ -304,15 +304,15 @@ fn end(
         _ if segment.path.is_none() => {}
         Some(_) => {
             let doubt = format!(
-                "W0226: the ends of `{name}` leave the grid lines, as it moves along its own length. Up to a cell more \
-                 of soil is loaded, and the force is too large. Use smaller cells."
+                "W0226: `{name}` moves along its own length, so its ends leave the grid lines. Soil up to a cell \
+                 beyond the ends is loaded, too, and the force is too large. Use smaller cells."
             );
             found.doubts.entry(name.clone()).or_insert(doubt);
         }
         None if outward.abs() < cell => {
             let message = format!(
-                "E0235: the segment is {} m long and ends inside a cell of {cell} m. It would restrain whole cells. \
-                 Use smaller cells, or put a grid line at {} = {} m.",
+                "E0235: the segment of {} m is shorter than a cell ({cell} m) and ends inside a cell, so it would \
+                 move or hold the whole cell. Use smaller cells, or put a grid line at {} = {} m.",
                 outward.abs(),
                 NAMES[along],
                 at[along]

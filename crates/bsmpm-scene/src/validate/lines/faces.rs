@@ -31,8 +31,9 @@ pub(super) fn interfaces(case: &Case, found: &mut FoundLine) {
             if meetings.is_empty() && ratios[0].max(ratios[1]) >= UNLIKE {
                 let [a, b] = [a, b].map(|body| &case.materials[body.material].name);
                 let doubt = format!(
-                    "W0223: bodies of material.{a} and material.{b} are less than a cell apart, but no interface was \
-                     found. Stresses there may be wrong. Let them share a plane, and put a grid line on it."
+                    "W0223: bodies of material.{a} and material.{b} are less than a cell apart, but have no common \
+                     plane. Stresses there may be wrong. Let the bodies share a plane, and put a grid line on this \
+                     plane."
                 );
                 found.doubts.entry(format!("{a} {b} apart")).or_insert(doubt);
             }

@@ -20,8 +20,8 @@ pub(super) fn gravity(case: &Case, report: &mut Report<'_>) {
     let (points, name) = (if vertical > LEVEL * size { "upwards" } else { "sideways" }, ["x", "y", "z"][dims - 1]);
     let down = if dims == 3 { "[0, 0, -9.81]" } else { "[0, -9.81]" };
     report.warn(format!(
-        "W0104: gravity.acceleration: {:?} m/s2 points {points}, away from the supports. {name} is positive upwards. Write \
-         acceleration = {down}, or support the side that gravity points to.",
+        "W0104: gravity.acceleration: gravity of {:?} m/s2 points {points}, away from the supports ({name} is \
+         positive upwards). Write acceleration = {down}, or support the side that gravity points to.",
         &acceleration[..dims]
     ));
 }

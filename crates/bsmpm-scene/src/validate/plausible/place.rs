@@ -24,8 +24,8 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
     let Some(most) = tiny.iter().map(|(part, _)| *part).reduce(f64::max) else { return };
     let paths: Vec<String> = tiny.into_iter().map(|(_, path)| path).collect();
     report.warn(format!(
-        "W0105: {}: the body has {most:.1e} of the grid's size along each axis. Lengths without a unit are in m. If mm are \
-         meant, write them: \"32 mm\"; otherwise make the grid smaller.",
+        "W0105: {}: the body is tiny: at most {most:.1e} times as large as the grid. Lengths without a unit are in m. \
+         If mm are meant, write the unit, such as \"32 mm\"; otherwise use a smaller grid.",
         listed(&paths)
     ));
 }
@@ -39,8 +39,8 @@ pub(super) fn histories(case: &Case, root: &Record, report: &mut Report<'_>) {
             continue;
         }
         report.warn(format!(
-            "W0106: {}: no body is within a cell ({reach:.2} m) of {:?}. The history would record the nearest material point \
-             instead. Move `at` into a body.",
+            "W0106: {}: no body is within a cell ({reach:.2} m) of the place {:?} m. The history would follow the \
+             nearest material point, which is elsewhere. Move `at` into a body.",
             record.path_of("at"),
             &at[..case.grid.dims()]
         ));

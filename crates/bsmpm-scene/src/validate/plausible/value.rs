@@ -40,8 +40,8 @@ fn bare(record: &Record, key: &str) -> Option<f64> {
 pub(super) fn material(record: &Record, scale: &Scale, report: &mut Report<'_>) {
     if let Some(young) = bare(record, "young").filter(|young| is_soft(*young, scale)) {
         report.warn(format!(
-            "W0101: {}: {young} Pa is {} kPa, too soft for the stress in this case{}. If kPa are meant, write \"{young} kPa\"; \
-             otherwise write \"{young} Pa\".",
+            "W0101: {}: a modulus of {young} Pa ({} kPa) is too small for the stress in this case{}. If kPa are \
+             meant, write \"{young} kPa\"; otherwise write \"{young} Pa\".",
             record.path_of("young"),
             1e-3 * young,
             scale.shown()
@@ -50,8 +50,8 @@ pub(super) fn material(record: &Record, scale: &Scale, report: &mut Report<'_>) 
     for key in ["cohesion", "yield_stress", "residual_cohesion"] {
         let Some(strength) = bare(record, key).filter(|strength| is_weak(*strength, record, scale)) else { continue };
         report.warn(format!(
-            "W0102: {}: {strength} Pa is {} kPa, negligible against the stress in this case{}. If kPa are meant, write \
-             \"{strength} kPa\"; otherwise write \"{strength} Pa\".",
+            "W0102: {}: a strength of {strength} Pa ({} kPa) is negligible against the stress in this case{}. If kPa \
+             are meant, write \"{strength} kPa\"; otherwise write \"{strength} Pa\".",
             record.path_of(key),
             1e-3 * strength,
             scale.shown()
@@ -65,8 +65,8 @@ pub(super) fn material(record: &Record, scale: &Scale, report: &mut Report<'_>) 
     ] {
         let Some(angle) = bare(record, key).filter(|angle| angle.abs() < least) else { continue };
         report.warn(format!(
-            "W0103: {}: {angle} degrees look like radians ({:.3} degrees). Angles without a unit are in degrees. Write \
-             \"{angle} rad\" or \"{angle} deg\".",
+            "W0103: {}: an angle of {angle} degrees is so small that radians may be meant ({:.3} degrees). Without a \
+             unit, angles are in degrees. Write \"{angle} rad\" or \"{angle} deg\".",
             record.path_of(key),
             angle.to_degrees()
         ));
@@ -94,8 +94,8 @@ pub(super) fn loads(root: &Record, scale: &Scale, report: &mut Report<'_>) {
         let key = if record.gives("pressure") { "pressure" } else { "stress" };
         if let Some(load) = pressure.filter(|load| *load < LOAD && *load < NO_LOAD * stress) {
             report.warn(format!(
-                "W0110: {}: {load} Pa is {} kPa, negligible against the stress in this case{}. If kPa are meant, write \
-                 \"{load} kPa\"; otherwise write \"{load} Pa\".",
+                "W0110: {}: a load of {load} Pa ({} kPa) is negligible against the stress in this case{}. If kPa are \
+                 meant, write \"{load} kPa\"; otherwise write \"{load} Pa\".",
                 record.path_of(key),
                 1e-3 * load,
                 scale.shown()
@@ -106,8 +106,8 @@ pub(super) fn loads(root: &Record, scale: &Scale, report: &mut Report<'_>) {
         let weight = stress * scale.height;
         if let Some(force) = bare_list(record, "force").filter(|force| *force < NO_FORCE * weight) {
             report.warn(format!(
-                "W0110: {}: {force} N is negligible against the weight in this case ({:.3} kN). Check the unit, and write it, \
-                 for example \"{force} kN/m\" in plane strain.",
+                "W0110: {}: a force of {force} N is negligible against the weight of the soil in this case ({:.3} \
+                 kN). Check the value, and write its unit, such as \"{force} kN/m\" in plane strain.",
                 record.path_of("force"),
                 1e-3 * weight
             ));

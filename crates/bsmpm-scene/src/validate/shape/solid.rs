@@ -46,8 +46,8 @@ pub(super) fn region(
         Ok(volume) => {
             if (volume.scale() - 1.0).abs() > SCALED {
                 report.warn(format!(
-                    "W0214: {}: the body is thin for these cells, so its volume in cut cells was scaled by {:.2}. \
-                     Stresses there are inaccurate. Use cells of at most five times its thickness.",
+                    "W0214: {}: the body is so thin that its volume in cells at its surface had to be scaled by \
+                     {:.2}. Stresses in these cells are inaccurate. Use cells of at most five times the thickness.",
                     body.path_of(key),
                     volume.scale()
                 ));
@@ -66,8 +66,8 @@ fn reach(shape: &SolidShape) -> Option<String> {
     let SolidShape::Surface(surface) = shape else { return None };
     let [[x, y, z], [to_x, to_y, to_z]] = surface.bounds();
     Some(format!(
-        "E0202: the triangles reach from [{x:.3}, {y:.3}, {z:.3}] to [{to_x:.3}, {to_y:.3}, {to_z:.3}] m, out of the \
-         grid. Check the unit: scale = 0.001 reads millimetres."
+        "E0202: the surface reaches from [{x:.3}, {y:.3}, {z:.3}] to [{to_x:.3}, {to_y:.3}, {to_z:.3}] m, beyond the \
+         grid. If its file is in mm, set scale = 0.001; otherwise enlarge the grid."
     ))
 }
 
@@ -98,7 +98,8 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         let (along, from, to) = (shape.word::<Axis>("along")?, shape.number("from")?, shape.number("to")?);
         if from >= to {
             let message = format!(
-                "E0203: to = {to} m is not above from = {from} m, so the body is empty. Exchange or correct the ends."
+                "E0203: to = {to} m is not above from = {from} m, so the body has no length. Exchange or correct \
+                 `from` and `to`."
             );
             shape.error("to", message, report);
             return None;
@@ -110,7 +111,8 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         let outline = section(shape, report)?;
         if outline.bounds[0][0] < 0.0 {
             let message = format!(
-                "E0224: the outline reaches across the axis of revolution, to the radius {} m. Keep it at 0 or more.",
+                "E0224: the outline crosses the axis of revolution: its smallest radius is {} m. Correct the outline \
+                 so that all radii are at least 0.",
                 outline.bounds[0][0]
             );
             shape.error(if shape.gives("circle") { "circle" } else { "polygon" }, message, report);
@@ -129,8 +131,8 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
             Ok(surface) => {
                 if is_turned(rows) {
                     report.warn(format!(
-                        "W0215: {}: all triangles are inside out, and the volume that they enclose is filled. If they \
-                         are a hole, use `subtract`; otherwise reverse the normals.",
+                        "W0215: {}: the normals of all triangles point inwards. The enclosed volume is taken as the \
+                         body. If the triangles describe a hole, use `subtract`; otherwise reverse the normals.",
                         shape.path_of("triangles")
                     ));
                 }
@@ -145,7 +147,8 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
     if let Some(key) = ["polygon", "circle"].into_iter().find(|key| record.gives(key)) {
         record.error(
             key,
-            "E0225: this outline lies in a plane, and the case is 3-D. Give it a length with extrude = { ... }.",
+            "E0225: a plane outline has no volume, and the case is 3-D. Give the outline a length with extrude = { \
+             ... }.",
             report,
         );
         return None;

@@ -9,10 +9,14 @@ const SLOPE: &str = include_str!("../../../../bsmpm-scene/tests/newcomer/slope.t
 #[test]
 fn a_step_that_fails_repeats_the_warning_of_a_probable_slip() {
     let slips = [
-        ("\"10 kPa\"", "10.0", "W0102: material.soil.cohesion: 10 Pa is 0.01 kPa"),
-        ("friction_angle = 20.0", "friction_angle = 0.349", "W0103: material.soil.friction_angle: 0.349 degrees"),
-        ("[0.0, -9.81]", "[0.0, 9.81]", "W0104: gravity.acceleration: [0.0, 9.81] m/s2 points upwards"),
-        ("[0.0, -9.81]", "[9.81, 0.0]", "W0104: gravity.acceleration: [9.81, 0.0] m/s2 points sideways"),
+        ("\"10 kPa\"", "10.0", "W0102: material.soil.cohesion: a strength of 10 Pa (0.01 kPa)"),
+        (
+            "friction_angle = 20.0",
+            "friction_angle = 0.349",
+            "W0103: material.soil.friction_angle: an angle of 0.349 degrees",
+        ),
+        ("[0.0, -9.81]", "[0.0, 9.81]", "W0104: gravity.acceleration: gravity of [0.0, 9.81] m/s2 points upwards"),
+        ("[0.0, -9.81]", "[9.81, 0.0]", "W0104: gravity.acceleration: gravity of [9.81, 0.0] m/s2 points sideways"),
     ];
     for (part, by, warning) in slips {
         let output = Scratch::with_case(&changed(SLOPE, part, by)).direct(&["case.toml"]).expect(80);
