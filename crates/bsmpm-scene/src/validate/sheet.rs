@@ -251,6 +251,6 @@ mod tests {
         let says = |all: &[Triangle]| in_one_piece(all).unwrap_err();
         assert!(says(&[[o, x, y], [o, z, y]]).contains("sides of the surface"));
         assert!(says(&[[o, x, y], [o, y, z], [y, o, [1.0; 3]]]).contains("3 triangles share the edge"));
-        assert!(says(&[[o, x, y], [[5.0; 3], z, [6.0, 5.0, 5.0]]]).contains("2 pieces"));
+        assert!(says(&[[o, x, y], [[5.0; 3], z, [6.0, 5.0, 5.0]]]).contains("2 separate pieces"));
     }
 }

@@ -267,8 +267,7 @@ pub const QUASI_STATIC: &[Row] = &[
     .down(2),
     row("[output]", "[[history]]\nquantity = \"slip\"\n[output]", "history.0.quantity", "E0646").down(1),
     row("[output]", "[[history]]\nquantity = \"penetration\"\n[output]", "history.0.quantity", "E0646").down(1),
-    row("[output]", "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 1\n[output]", "initial", "E0408")
-        .down(2),
+    row("[output]", "[gravity]\nacceleration = [0, -9.81]\n[initial]\nk0 = 1\n[output]", "initial", "E0408").down(2),
 ];
 
 /// Strips that rub and let go, and histories of strips by name, in a quasi-static case.

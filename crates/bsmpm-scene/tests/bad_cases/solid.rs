@@ -149,7 +149,7 @@ pub const SOLID: &[Row] = &[
         BALL,
         "revolve = { polygon = [[-0.1, 3], [1, 3], [0, 4]], about = [0, 0] }",
         "rigid.0.revolve.polygon",
-        "radius is -0.1",
+        "E0434",
     ),
     row("deactivate  = [\"plate\"]", "remove = [\"block\"]", "footing.rectangle", "E0626").up(37),
     row("back = \"contact\" }", "back = \"absorbing\" }", "stage.0.boundary.back", "E0614"),

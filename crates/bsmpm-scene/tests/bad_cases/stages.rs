@@ -217,7 +217,7 @@ pub const STAGES_OF_ONE: &[Row] = &[
          1.5] }\n\
          [[stage]]\nat = 0.5\nadd = [\"fill\"]\n[[traction]]\nfrom = [0, 1]\nto = [2, 1]\npressure = 1e3\n[output]",
         "traction.0.pressure",
-        "E0252: traction.0.pressure: at t = 0.5 bodies",
+        "E0252: traction.0.pressure: at t = 0.5",
     )
     .down(11),
     row(
