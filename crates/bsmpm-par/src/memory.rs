@@ -59,11 +59,12 @@ impl Shortage {
     fn refusal(&self) -> String {
         match self.by {
             Limit::Asked => format!(
-                "E0702: the case needs {self}. Nothing was run or written. Use larger cells or fewer points, or raise this limit."
+                "E0702: the case needs too much memory: {self}. Nothing was run. Use larger cells or fewer points, or \
+                 increase --max-memory."
             ),
             Limit::Free | Limit::Group | Limit::Process => format!(
-                "E0702: the case needs {self}. Nothing was run or written. Use larger cells, fewer points or more hosts, or set \
-                 `--max-memory`."
+                "E0702: the case needs too much memory: {self}. Nothing was run. Use larger cells, fewer points or \
+                 more hosts, or set `--max-memory`."
             ),
         }
     }
@@ -97,11 +98,7 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
                 say(&headed(&text, "warning"));
             }
             Some(shortage) => {
-                let text = format!(
-                    "E0702: the case needs too much memory: {shortage}. Nothing was run. Use larger cells, fewer \
-                     points or more hosts, or set `--max-memory`."
-                );
-                complain(&text);
+                complain(&shortage.refusal());
                 code = exit::MEMORY;
             }
             None => {}

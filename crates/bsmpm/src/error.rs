@@ -109,8 +109,8 @@ pub enum StepError {
     },
     /// A drain or inflow is on material through which no water flows.
     #[error(
-        "E0745: no water can flow at drain number {drain} (counted from 0: drains, then inflows), because \
-        {points} of its points are on impermeable material."
+        "E0745: no water can flow at {points} point(s) of drain number {drain} (counted from 0: drains, then inflows): the \
+         material there is impermeable. Move the drain, or set `permeability` of that material."
     )]
     Undrained {
         /// Number of the drain; the inflows behind the drains.

@@ -114,12 +114,12 @@ fn constant(name: &str, case: &Case) -> &'static str {
              oscillate. Increase `body.points_per_cell`."
         }
         "compression" if may_fit(case) => {
-            "I0006: volume reduction of the most compressed material is {value} ({range}). The stress of this \
-             material is wrong by up to 1 %. Set `solver.quadrature = \"fitted\"`, or `body.points_per_cell = 4`."
+            "I0006: volume reduction of the most compressed material is {value} ({range}). With few points per cell its \
+             stress is wrong by up to 1 %. Set `solver.quadrature = \"fitted\"`, or `body.points_per_cell = 4`."
         }
         "compression" => {
-            "I0006: volume reduction of the most compressed material is {value} ({range}). The stress of this \
-             material is wrong by up to 1 %. Set `body.points_per_cell = 4`."
+            "I0006: volume reduction of the most compressed material is {value} ({range}). With few points per cell its \
+             stress is wrong by up to 1 %. Set `body.points_per_cell = 4`."
         }
         "force-measure" => {
             "I0007: largest force residual of an accepted step is {value} ({range}). The program accepted a step that \

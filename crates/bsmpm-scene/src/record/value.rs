@@ -138,9 +138,8 @@ impl ValueReader<'_, '_> {
         let message = match node.origin {
             Origin::Override(_) => UNREAD,
             Origin::Text(_) | Origin::Nowhere => {
-                "E0027: a data file is named in braces, by the key `file` and at most the key `along`. Write { file = \
-                 \
-                 \"rows.csv\" }."
+                "E0027: this does not name a data file: in braces only the keys `file` (required) and `along` are allowed. \
+                 Write { file = \"rows.csv\" }."
             }
         };
         self.fail(node, message)

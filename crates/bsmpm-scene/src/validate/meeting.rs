@@ -88,8 +88,8 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
     match meeting.other {
         Other::Rigid(_) => {
             let message = format!(
-                "E0251: `{other}` and `{name}` are adjacent in one surface and move differently. The soil cannot \
-                 follow both. Use [[prescribed]] or [[rigid]] for both, or leave a cell between the two."
+                "E0251: `{name}` ([[prescribed]] or [footing]) and `{other}` ([[rigid]]) share an edge and move \
+                 differently. The soil there cannot follow both. Use one kind for both, or leave a gap of a cell."
             );
             record.error("from", message, report);
         }

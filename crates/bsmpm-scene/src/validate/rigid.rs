@@ -358,8 +358,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         }
         if case.settles || case.initial == Some(Initial::Elastic) {
             report.warn(format!(
-                "W0414: {}: rigid bodies take no part in the equilibrium of [initial], so soil that they support \
-                 moves at the start. Use initial.k0 alone, or gravity.ramp without [initial].",
+                "W0414: {}: the equilibrium of [initial] is found without rigid bodies, so soil that they support moves \
+                 at the start. Give only `k0` in [initial], or replace [initial] by gravity.ramp.",
                 record.path
             ));
         }

@@ -102,9 +102,8 @@ fn check_meetings(case: &Case, root: &Record, report: &mut Report<'_>) {
             let [name, of] = [one, other].map(|number| &case.rigid[number].name);
             let excess = 100.0 / cells;
             let warning = format!(
-                "W0232: rigid bodies `{name}` and `{of}` lie side by side and move differently. Their forces are \
-                 about {excess:.0} % too large ({cells:.0} cells across). Use smaller cells, or [[prescribed]] for \
-                 both."
+                "W0232: rigid bodies `{name}` and `{of}` touch and move differently. The smaller one is {cells:.0} cells \
+                 wide, so the forces are about {excess:.0} % too large. Use smaller cells, or [[prescribed]] for both."
             );
             let error = format!(
                 "E0250: rigid bodies `{name}` and `{of}` lie side by side and move differently. Their forces would be \

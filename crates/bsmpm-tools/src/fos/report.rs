@@ -308,8 +308,8 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
         ));
     } else if kink.is_none() && curve.has_branch() {
         notes.push(
-            "W0805: the displacements after failure form no straight line, so the result is only a range up to the \
-             first failed trial. Increase `analysis.steps` for a sharper result."
+            "W0805: displacements do not grow linearly with the factor after failure. The factor of safety is only known \
+             to lie between the last stable and the first failed trial. Increase `analysis.steps`."
                 .to_owned(),
         );
     }
