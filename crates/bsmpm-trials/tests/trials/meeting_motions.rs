@@ -188,7 +188,7 @@ fn motions_that_the_rule_does_not_cover_are_refused_by_name() {
     let (rest, _) = rest.split_once("[[history]]\nquantity = \"reaction\"\nof = \"floor\"").expect("its history");
     scratch.write("rigid.toml", door.to_owned() + rigid + rest);
     let output = scratch.direct(&["rigid.toml", "--check"]).expect(65);
-    output.says_once("`rigid.0` and `prescribed.0` are adjacent in one surface and move differently");
+    output.says_once("E0251: prescribed.0.from: `prescribed.0` ([[prescribed]] or [footing]) and `rigid.0` ([[rigid]]) share an edge");
 }
 
 /// The door and the floor as rigid bodies: N = 2.135 for 1.95 to 2 on 12 cells across the door, 2.24 on 8.
@@ -204,8 +204,8 @@ fn rigid_bodies_that_meet_in_one_plane_are_warned_of_with_the_error_and_refused_
                   [[history]]\nquantity = \"rigid-force\"\nrigid = \"door\"\nname = \"door\"\n";
     let case = format!("{before}{bodies}[stabilisation]{method}");
     let scratch = Scratch::with_case(&case);
-    let warning = "warning W0232: rigid bodies `door` and `floor` lie side by side and move differently. Their forces \
-                   are about 8 % too large (12 cells across)";
+    let warning = "warning W0232: rigid bodies `door` and `floor` touch and move differently. The smaller one is 12 cells \
+                   wide, so the forces are about 8 % too large.";
     let refused = scratch.direct(&["case.toml", "--check", "--set", "grid.cell=0.25"]).expect(65);
     refused.says_once("error E0250: rigid.1.name: rigid bodies `door` and `floor`");
     scratch.direct(&["case.toml", "--check"]).expect(0).says_once(warning);
@@ -215,5 +215,5 @@ fn rigid_bodies_that_meet_in_one_plane_are_warned_of_with_the_error_and_refused_
     assert!((found / 2.0 - 1.067).abs() < 0.02, "{found}");
     // Bodies that move as one have nothing to warn of.
     scratch.write("case.toml", changed(&case, "path = [[0.2, 0.0, 0.0], [1.0, 0.0, -0.02]]\n", ""));
-    assert!(!scratch.direct(&["case.toml", "--check"]).expect(0).stderr.contains("lie side by side"));
+    assert!(!scratch.direct(&["case.toml", "--check"]).expect(0).stderr.contains("W0232"));
 }
