@@ -164,7 +164,7 @@ fn a_slope_that_has_failed_is_reported_with_the_time() {
             let failed_at = failed_at.expect("it has failed");
             assert!(found.unusual && found.value > 300.0 && within.contains(&failed_at), "{found:?}, {failed_at}");
             assert!(log.contains("warning I0027: ") && log.contains("`bsmpm fos`"), "{log}");
-            let reported = format!("failed under its load at t = {}", (failed_at * 1e6).round() / 1e6);
+            let reported = format!("which failed at t = {},", (failed_at * 1e6).round() / 1e6);
             assert!(log.contains(&reported), "{log}");
         }
     }
