@@ -97,8 +97,8 @@ pub struct Arguments {
     /// Threads of each rank
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: u32,
-    /// Do not run a case that needs more memory than this on all ranks, e.g. 16GiB (exit 71) [default: the memory of the
-    /// host of the first rank]
+    /// Do not run a case that needs more memory than this on all ranks, e.g. 16GiB (exit 71) [default: the memory of
+    /// the host of the first rank]
     #[arg(long, value_name = "SIZE", value_parser = size)]
     pub max_memory: Option<u64>,
     /// Do not start a run whose frames and checkpoints may not fit on the disk (exit 74), instead of a warning

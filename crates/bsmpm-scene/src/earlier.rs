@@ -2,7 +2,7 @@
 //! the report one note for each earlier name.
 
 use crate::document::{DocumentTable, Node, Value};
-use crate::record::join;
+use crate::key_path::join;
 use crate::report::Report;
 use crate::schema::{Kind, ROOT, Table};
 use crate::words::Words;

@@ -26,6 +26,7 @@ mod earlier;
 mod error;
 mod estimate;
 mod grid;
+mod key_path;
 mod nearest;
 mod openings;
 mod overrides;

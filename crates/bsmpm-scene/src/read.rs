@@ -53,7 +53,7 @@ impl Case {
             );
             return Err(report.into_errors());
         }
-        slips::mend(&mut document, &mut report);
+        slips::mend(&ROOT, &mut document, &mut report);
         let filled = preset::fill(&mut document, &source, overrides, &mut report);
         let record = record::read(&ROOT, &document, &mut report);
         let as_written = overrides.is_empty() && !filled && !report.has_renamings();

@@ -5,6 +5,7 @@ mod value;
 
 use crate::document::{self, DocumentTable, Node, Value};
 use crate::error::Origin;
+use crate::key_path::join;
 use crate::report::Report;
 use crate::schema::{Group, Key, Kind, Presence, Table};
 use crate::slips;
@@ -118,7 +119,7 @@ impl Context {
         path: &str,
         report: &mut Report<'_>,
     ) -> Record {
-        slips::report_unknown(table, written, path, report);
+        slips::report_unknown(self.root, table, written, path, report);
         let mut record = Record { path: path.to_owned(), origin, root: self.root, table, fields: Vec::new() };
         for key in table.keys {
             let path = join(path, key.name);
@@ -224,10 +225,6 @@ impl Context {
         }
         (records.len() == items.len()).then_some(Datum::Records(records))
     }
-}
-
-pub(crate) fn join(path: &str, key: &str) -> String {
-    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
 /// What has been reported of the groups of a table.

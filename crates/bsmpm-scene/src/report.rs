@@ -1,7 +1,7 @@
 //! Collects what is wrong, doubtful or chosen while a case is read, each thing once and in the file's order.
 
 use crate::error::{Choice, Error, Origin, Place};
-use crate::record::join;
+use crate::key_path::join;
 use crate::source::Source;
 use crate::words::RemovedWord;
 use bsmpm_messages::{code_of, without_code};
@@ -85,7 +85,7 @@ impl<'a> Report<'a> {
         self.errors.push(ReportedError { origin, error, about: others, causes: Vec::new() });
     }
 
-    /// Records an error that only follows from another one if that is about one of the `causes`: then it is not printed.
+    /// Records an error that is not printed if another one is about one of the `causes`: it only follows from that.
     pub(crate) fn consequence(&mut self, origin: Origin, key: &str, message: impl Into<String>, causes: &[&str]) {
         let causes = causes.iter().map(|cause| (*cause).to_owned()).collect();
         let error = self.placed(origin, key, message.into(), None);

@@ -1,45 +1,120 @@
-//! Slips that leave no doubt what is meant: a misspelt key, one pair of brackets for two. Each is an error; the document
-//! then gets what is meant, so that the rest of the case is read as if it were right, and nothing else is reported that
-//! only follows from the slip.
+//! Slips that leave no doubt what is meant: a misspelt key, one pair of brackets for two. Each is an error; the
+//! document then gets what is meant, so that the rest of the case is read as if it were right, and nothing else is
+//! reported that only follows from the slip.
 
 use crate::document::{DocumentTable, Node, Value};
+use crate::key_path::join;
 use crate::nearest::nearest;
-use crate::record::join;
 use crate::report::{Report, shortened};
-use crate::schema::{Key, Kind, Presence, ROOT, Table, answer};
+use crate::schema::{Key, Kind, Presence, Table, answer};
 use bsmpm_messages::code_of;
 
 /// Unknown keys of a table that are reported at most.
 const MOST_UNKNOWN: usize = 50;
 
 /// Reports the slips of the whole document and puts right what is meant.
-pub(crate) fn mend(document: &mut DocumentTable, report: &mut Report<'_>) {
-    in_table(document, &ROOT, "", report);
+pub(crate) fn mend(root: &'static Table, document: &mut DocumentTable, report: &mut Report<'_>) {
+    Mender { root, report }.in_table(document, root, "");
 }
 
-fn in_table(written: &mut DocumentTable, table: &'static Table, path: &str, report: &mut Report<'_>) {
-    rename_misspelt(written, table, path, report);
-    for entry in &mut written.entries {
-        if let Some(key) = table.key(&entry.key) {
-            in_value(&mut entry.node, &key.kind, &join(path, &entry.key), report);
+/// Goes through the document.
+struct Mender<'a, 'b> {
+    root: &'static Table,
+    report: &'a mut Report<'b>,
+}
+
+impl Mender<'_, '_> {
+    fn in_table(&mut self, written: &mut DocumentTable, table: &'static Table, path: &str) {
+        self.rename_misspelt(written, table, path);
+        for entry in &mut written.entries {
+            if let Some(key) = table.key(&entry.key) {
+                self.in_value(&mut entry.node, &key.kind, &join(path, &entry.key));
+            }
         }
     }
-}
 
-/// Gives misspelt keys the name that is meant, if neither it nor a rival of it is given.
-fn rename_misspelt(written: &mut DocumentTable, table: &'static Table, path: &str, report: &mut Report<'_>) {
-    let mut given: Vec<String> = written.entries.iter().map(|entry| entry.key.clone()).collect();
-    let is_unknown = |key: &str| table.key(key).is_none();
-    for entry in written.entries.iter_mut().filter(|entry| is_unknown(&entry.key)).take(MOST_UNKNOWN) {
-        let Some(meant) = meant(table, &entry.key) else { continue };
-        let is_given = |name: &str| given.iter().any(|other| other == name);
-        if is_given(meant) || table.rivals(meant).any(is_given) {
-            continue;
+    /// Gives misspelt keys the name that is meant, if neither it nor a rival of it is given.
+    fn rename_misspelt(&mut self, written: &mut DocumentTable, table: &'static Table, path: &str) {
+        let mut given: Vec<String> = written.entries.iter().map(|entry| entry.key.clone()).collect();
+        let is_unknown = |key: &str| table.key(key).is_none();
+        for entry in written.entries.iter_mut().filter(|entry| is_unknown(&entry.key)).take(MOST_UNKNOWN) {
+            let Some(meant) = meant(table, &entry.key) else { continue };
+            let is_given = |name: &str| given.iter().any(|other| other == name);
+            if is_given(meant) || table.rivals(meant).any(is_given) {
+                continue;
+            }
+            let assumed = join(path, meant);
+            self.report.slip(
+                entry.origin,
+                &join(path, &entry.key),
+                unknown_key(self.root, table, &entry.key),
+                &assumed,
+            );
+            given.push(meant.to_owned());
+            meant.clone_into(&mut entry.key);
         }
-        let assumed = join(path, meant);
-        report.slip(entry.origin, &join(path, &entry.key), unknown_key(table, &entry.key), &assumed);
-        given.push(meant.to_owned());
-        meant.clone_into(&mut entry.key);
+    }
+
+    fn in_value(&mut self, node: &mut Node, kind: &'static Kind, path: &str) {
+        match kind {
+            Kind::Tables(table) => {
+                self.list_single_table(node, table, path);
+                let Value::List(items) = &mut node.value else { return };
+                for (number, item) in items.iter_mut().enumerate() {
+                    if let Value::Table(written) = &mut item.value {
+                        self.in_table(written, table, &join(path, &number.to_string()));
+                    }
+                }
+            }
+            Kind::Named(table) => {
+                let Value::Table(named) = &mut node.value else { return };
+                for entry in &mut named.entries {
+                    let path = join(path, &entry.key);
+                    self.take_only_table(&mut entry.node, table, &path);
+                    if let Value::Table(written) = &mut entry.node.value {
+                        self.in_table(written, table, &path);
+                    }
+                }
+            }
+            Kind::Table(table) => {
+                self.take_only_table(node, table, path);
+                if let Value::Table(written) = &mut node.value {
+                    self.in_table(written, table, path);
+                }
+            }
+            _ => {
+                if let (Some(table), Value::Table(written)) = (kind.table(), &mut node.value) {
+                    self.in_table(written, table, path);
+                }
+            }
+        }
+    }
+
+    /// `[body]` for `[[body]]`: the one table becomes a list.
+    fn list_single_table(&mut self, node: &mut Node, table: &Table, path: &str) {
+        let Value::Table(written) = &mut node.value else { return };
+        let name = path.rsplit('.').next().unwrap_or(path);
+        let message = format!(
+            "E0047: expected a list of tables, {}, found a single table. Write two pairs of brackets, [[{}]], even for \
+             one table.",
+            table.header,
+            if table.header.starts_with("[[") { table.header.trim_matches(['[', ']']) } else { name }
+        );
+        self.report.error(node.origin, path, message);
+        let item = Node { origin: node.origin, value: Value::Table(std::mem::take(written)) };
+        node.value = Value::List(vec![item]);
+    }
+
+    /// `[[grid]]` for `[grid]`: the only table of the list is the one that is meant.
+    fn take_only_table(&mut self, node: &mut Node, table: &Table, path: &str) {
+        let Value::List(items) = &mut node.value else { return };
+        let [Node { value: Value::Table(written), .. }] = &mut items[..] else { return };
+        let message = format!(
+            "E0048: expected one table, {}, found a list of tables. Write one pair of brackets in place of two.",
+            table.header
+        );
+        self.report.error(node.origin, path, message);
+        node.value = Value::Table(std::mem::take(written));
     }
 }
 
@@ -67,12 +142,18 @@ fn names(table: &'static Table) -> impl Iterator<Item = &'static str> {
 }
 
 /// Reports the keys of a table that it does not have.
-pub(crate) fn report_unknown(table: &'static Table, written: &DocumentTable, path: &str, report: &mut Report<'_>) {
+pub(crate) fn report_unknown(
+    root: &'static Table,
+    table: &'static Table,
+    written: &DocumentTable,
+    path: &str,
+    report: &mut Report<'_>,
+) {
     let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
     for entry in unknown.by_ref().take(MOST_UNKNOWN) {
         let near = nearest(&entry.key, names(table));
         let meant = answered(table, &entry.key).into_iter().chain(near).map(|name| join(path, name)).collect();
-        report.about(entry.origin, &join(path, &entry.key), unknown_key(table, &entry.key), meant);
+        report.about(entry.origin, &join(path, &entry.key), unknown_key(root, table, &entry.key), meant);
     }
     if let Some(entry) = unknown.next() {
         let message = format!(
@@ -84,7 +165,7 @@ pub(crate) fn report_unknown(table: &'static Table, written: &DocumentTable, pat
 }
 
 /// What is wrong with an unknown key, and what is meant.
-fn unknown_key(table: &'static Table, key: &str) -> String {
+fn unknown_key(root: &'static Table, table: &'static Table, key: &str) -> String {
     if let Some(answer) = answer(table, key) {
         return match code_of(answer) {
             Some(_) => answer.to_owned(),
@@ -95,70 +176,8 @@ fn unknown_key(table: &'static Table, key: &str) -> String {
     if let Some(meant) = nearest(key, names(table)) {
         return format!("E0011: the key `{name}` does not exist in {header}; did you mean `{meant}`?");
     }
-    let elsewhere = ROOT.all().into_iter().find(|other| other.key(key).is_some());
+    let elsewhere = root.all().into_iter().find(|other| other.key(key).is_some());
     let hint = elsewhere.map_or(String::new(), |other| format!("; it belongs to {}", other.header));
     let known: Vec<&str> = names(table).collect();
     format!("E0011: the key `{name}` does not exist in {header}{hint}. Known keys: {}.", known.join(", "))
-}
-
-fn in_value(node: &mut Node, kind: &'static Kind, path: &str, report: &mut Report<'_>) {
-    match kind {
-        Kind::Tables(table) => {
-            list_single_table(node, table, path, report);
-            let Value::List(items) = &mut node.value else { return };
-            for (number, item) in items.iter_mut().enumerate() {
-                if let Value::Table(written) = &mut item.value {
-                    in_table(written, table, &join(path, &number.to_string()), report);
-                }
-            }
-        }
-        Kind::Named(table) => {
-            let Value::Table(named) = &mut node.value else { return };
-            for entry in &mut named.entries {
-                let path = join(path, &entry.key);
-                take_only_table(&mut entry.node, table, &path, report);
-                if let Value::Table(written) = &mut entry.node.value {
-                    in_table(written, table, &path, report);
-                }
-            }
-        }
-        Kind::Table(table) => {
-            take_only_table(node, table, path, report);
-            if let Value::Table(written) = &mut node.value {
-                in_table(written, table, path, report);
-            }
-        }
-        _ => {
-            if let (Some(table), Value::Table(written)) = (kind.table(), &mut node.value) {
-                in_table(written, table, path, report);
-            }
-        }
-    }
-}
-
-/// `[body]` for `[[body]]`: the one table becomes a list.
-fn list_single_table(node: &mut Node, table: &Table, path: &str, report: &mut Report<'_>) {
-    let Value::Table(written) = &mut node.value else { return };
-    let name = path.rsplit('.').next().unwrap_or(path);
-    let message = format!(
-        "E0047: expected a list of tables, {}, found a single table. Write two pairs of brackets, [[{}]], even for \
-         one table.",
-        table.header,
-        if table.header.starts_with("[[") { table.header.trim_matches(['[', ']']) } else { name }
-    );
-    report.error(node.origin, path, message);
-    let item = Node { origin: node.origin, value: Value::Table(std::mem::take(written)) };
-    node.value = Value::List(vec![item]);
-}
-
-/// `[[grid]]` for `[grid]`: the only table of the list is the one that is meant.
-fn take_only_table(node: &mut Node, table: &Table, path: &str, report: &mut Report<'_>) {
-    let Value::List(items) = &mut node.value else { return };
-    let [Node { value: Value::Table(written), .. }] = &mut items[..] else { return };
-    let message = format!(
-        "E0048: expected one table, {}, found a list of tables. Write one pair of brackets in place of two.",
-        table.header
-    );
-    report.error(node.origin, path, message);
-    node.value = Value::Table(std::mem::take(written));
 }

@@ -70,7 +70,8 @@ pub struct SweepArguments {
     /// Columns of history.csv to compare; repeatable
     #[arg(long, value_name = "NAME[@TIME],...", required = true)]
     pub quantity: Vec<String>,
-    /// Reference for the errors: finest, baseline, extrapolated (over the cell sizes), the directory of a run, or numbers
+    /// Reference for the errors: finest, baseline, extrapolated (over the cell sizes), the directory of a run, or
+    /// numbers
     #[arg(long, value_name = "REFERENCE", default_value = "finest")]
     pub reference: String,
     /// Acceptable relative error

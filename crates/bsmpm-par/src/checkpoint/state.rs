@@ -227,8 +227,8 @@ impl CheckpointState {
         });
         let lost = |reason: String| {
             format!(
-                "E0725: the checkpoint of step {} cannot be written: {reason}. The run ends. Continue from the last checkpoint with smaller \
-             steps.",
+                "E0725: the checkpoint of step {} cannot be written: {reason}. The run ends. Continue from the last \
+                 checkpoint with smaller steps.",
                 self.steps
             )
         };

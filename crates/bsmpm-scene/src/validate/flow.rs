@@ -2,11 +2,13 @@
 
 mod crossing;
 mod leaks;
+mod permeability;
 mod shown;
 
 pub use shown::HELD_WATER;
 pub(super) use shown::check;
 
+use self::permeability::permeability;
 use super::STANDARD_GRAVITY;
 use super::load::{circle, increasing};
 use super::place;
@@ -18,7 +20,7 @@ use crate::region::{Region, skin};
 use crate::report::Report;
 use crate::words::{AnalysisType, Drainage, Geometry, Side};
 use bsmpm::model::Regime;
-use bsmpm::water::flow::{Course, Given, Motion, Permeability, PermeabilityLaw, Soil};
+use bsmpm::water::flow::{Course, Given, Motion, Soil};
 use bsmpm::water::retention::{Curve, Measured, Retention};
 
 /// N/m3  of water, unless a case gives it.
@@ -27,10 +29,6 @@ const WATER: f64 = 9810.0;
 const AT: f64 = 1e-9;
 /// Keys without which it is not known where permeable soil is.
 const PERMEABLE: &[&str] = &["body", "material"];
-/// Permeability, m/s, beyond which a number is taken for a slip: that of gravel without sand.
-const MOST_PERMEABLE: f64 = 1.0;
-/// The same, m/s, of the tightest clay.
-const LEAST_PERMEABLE: f64 = 1e-14;
 
 /// Message of a key that only pore-water flow uses.
 const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this entry has no effect. Give a material \
@@ -228,28 +226,6 @@ fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[
         return None;
     }
     Some(rows.into_iter().map(|[s, kept, k]| [s, (kept - residual) / (1.0 - residual), k]).collect())
-}
-
-fn permeability(record: &Record, report: &mut Report<'_>) -> Option<Permeability<3>> {
-    let given = record.numbers("permeability")?;
-    // Of a plane the third one moves nothing.
-    let along = [0, 1, 2].map(|axis| given[axis.min(given.len() - 1)]);
-    if let Some(much) = along.into_iter().find(|k| *k > MOST_PERMEABLE) {
-        let path = record.path_of("permeability");
-        report.warn(format!(
-            "W0109: {path}: a permeability of {much} m/s is above that of gravel (up to {MOST_PERMEABLE} m/s), so the \
-             soil would drain at once. Check the value, and write its unit, such as \"1e-5 m/s\"."
-        ));
-    }
-    if let Some(little) = along.into_iter().find(|k| *k > 0.0 && *k < LEAST_PERMEABLE) {
-        report.warn(format!(
-            "W0109: {}: a permeability of {little:e} m/s is below that of bentonite (1e-14 m/s). If the value is an \
-             intrinsic permeability in m2, multiply the value by 1e7 to convert it to m/s.",
-            record.path_of("permeability")
-        ));
-    }
-    let law = record.word_if_given("permeability_law")?.unwrap_or(PermeabilityLaw::Constant);
-    Some(Permeability { along: along.into(), law })
 }
 
 /// The bodies that are there when something begins to act: at the start, or once a stage has applied it.

@@ -221,7 +221,8 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
         }
         _ => return Some(None),
     };
-    if !(100.0..=30_000.0).contains(&density) {
+    let has_unit = record.has_unit("unit_weight") || record.has_unit("density");
+    if !has_unit && !(100.0..=30_000.0).contains(&density) {
         report.warn(format!(
             "W0108: {}: a density of {density:.3} kg/m3 (unit weight {:.3} kN/m3) is unusual: soil and rock have 5 to \
              30 kN/m3. Check the value, and write its unit, such as unit_weight = \"20 kN/m3\".",

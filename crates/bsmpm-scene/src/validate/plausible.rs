@@ -1,6 +1,6 @@
 //! Whether the physics is plausible: values that look like another unit, gravity that does not point down, bodies,
-//! histories and loads that are out of scale. Each is a warning with its probable cause. Who writes a value with its unit
-//! says that it is meant.
+//! histories and loads that are out of scale. Each is a warning with its probable cause. Who writes a value with its
+//! unit says that it is meant.
 
 mod direction;
 mod place;

@@ -335,7 +335,7 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
     let wall = "rigid=[{ name = \"wall\", polygon = [[34, 0], [36, 0], [36, 4]], displacement = [-0.1, 0.0] }]";
     for (set, reported) in [
         (vec!["solver.tolerance=2e-3"], "E0823: solver.tolerance = 2e-3 is too large"),
-        (vec!["solver.force_tolerance=1e-2"], "solver.force_tolerance = 1e-2 is too loose"),
+        (vec!["solver.force_tolerance=1e-2"], "E0823: solver.force_tolerance = 1e-2"),
         (vec!["analysis.type=dynamic"], "E0810"),
         (vec!["material.soil={ model = \"elastic\", young = 1e8, poisson = 0.3, density = 2e3 }"], "E0816"),
         (

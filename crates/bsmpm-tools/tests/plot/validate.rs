@@ -179,7 +179,10 @@ fn where_nothing_is_judged_nothing_passes() {
         prepare(dir.path(), &matrix);
         let output = validate(dir.path(), options);
         let message = String::from_utf8(output.stderr.clone()).unwrap();
-        assert!(output.status.code() == Some(2) && message.contains("the studies are: A footing"), "{output:?}");
+        assert!(
+            output.status.code() == Some(2) && message.contains("E0807") && message.contains("studies are: A footing"),
+            "{output:?}"
+        );
         assert!(!dir.path().join("calls.txt").exists());
     }
 }
