@@ -60,7 +60,7 @@ impl Shortage {
         match self.by {
             Limit::Asked => format!(
                 "E0702: the case needs too much memory: {self}. Nothing was run. Use larger cells or fewer points, or \
-                 increase --max-memory."
+                 increase this limit."
             ),
             Limit::Free | Limit::Group | Limit::Process => format!(
                 "E0702: the case needs too much memory: {self}. Nothing was run. Use larger cells, fewer points or \

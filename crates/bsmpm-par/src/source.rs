@@ -1,11 +1,11 @@
 //! The case file: read by rank 0, parsed by every rank from the same bytes.
 
 use crate::cli::Arguments;
-use crate::launch::{complain, say};
+use crate::launch::say;
 use crate::memory;
 use crate::setup;
 use bsmpm_io::exit::{CASE, MISSING};
-use bsmpm_messages::{headed, with_context};
+use bsmpm_messages::headed;
 use bsmpm_scene::Case;
 use mpi::collective::Root;
 use mpi::topology::{Communicator, SimpleCommunicator};
@@ -18,7 +18,7 @@ pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u
     let name = arguments.case.display().to_string();
     let bytes = broadcast(world, || {
         bsmpm_scene::load(&arguments.case).map_err(|error| {
-            complain(&with_context(&error.to_string(), &name));
+            say(&format!("{name}: {}", headed(&error.to_string(), "error")));
             if error.kind() == ErrorKind::InvalidData { CASE } else { MISSING }
         })
     })?;

@@ -149,6 +149,6 @@ fn a_failed_check_ends_with_77_and_says_so_once() {
 fn n_serial_copies_are_refused_with_78() {
     let scratch = Scratch::with_case(COLUMN);
     let output = scratch.job(None, &["case.toml"]).variable("PMI_SIZE", "4").run().expect(78);
-    output.says_once("the launcher started 4 processes");
+    output.says_once("error E0773: mpirun started 4 separate processes");
     assert_eq!(scratch.entries(), ["case.toml"]);
 }

@@ -99,7 +99,7 @@ fn a_dead_runs_lock_on_this_host_is_taken_over_and_that_is_reported() {
         scratch.job(ranks, &["case.toml"]).run().expect(73).says_once("error E0769: ");
         killed(&scratch, ranks);
         assert_ne!(lock(&scratch), holder);
-        scratch.job(ranks, &ONE_STEP).run().expect(75).says_once("taken over from process");
+        scratch.job(ranks, &ONE_STEP).run().expect(75).says_once("W0737: the output directory was locked by process");
         let warnings = manifest(&scratch.path("case.out")).warnings;
         assert!(warnings.iter().any(|warning| warning.contains("the process is gone")), "{warnings:?}");
         assert!(!scratch.path("case.out/.lock").exists());

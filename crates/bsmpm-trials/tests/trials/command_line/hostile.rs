@@ -58,21 +58,13 @@ fn i19_a_run_is_not_both_continued_and_replaced() {
 #[test]
 fn i20_hostile_sizes_are_refused_at_once_in_little_memory() {
     let rows = [
-        (
-            &["grid.cell=[4e-6, 5e-6]"][..],
-            "grid.cell: ",
-            "1000000000000 cells and 2000008000008 unknowns; at most 2147483647",
-        ),
-        (&["grid.upper=[9223372036854775807, 5]"], "grid.upper: ", "a length is at most 1e9 in SI"),
-        (&["grid.upper=[9223372036854775808, 5]"], "grid.upper: ", "9223372036854775808 is too large"),
+        (&["grid.cell=[4e-6, 5e-6]"][..], "grid.cell: ", "2000008000008 unknowns (at most 2147483647"),
+        (&["grid.upper=[9223372036854775807, 5]"], "grid.upper: ", "error E0010: "),
+        (&["grid.upper=[9223372036854775808, 5]"], "grid.upper: ", "error E0010: "),
         (&["grid.cell=1e-4"], "grid.cell: ", "2000000000 cells and 4000360008 unknowns"),
-        (&["grid.cell=5e-4", "body.0.points_per_cell=100"], "body: ", "640000000000 material points in all"),
-        (
-            &["body.0.points_per_cell=9223372036854775807"],
-            "body.0.points_per_cell: ",
-            "allowed: 1 <= points_per_cell <= 100",
-        ),
-        (&["analysis.steps=1000000000000"], "analysis.steps: ", "allowed: 1 <= steps <= 1000000000"),
+        (&["grid.cell=5e-4", "body.0.points_per_cell=100"], "body: ", "640000000000 material points (at most"),
+        (&["body.0.points_per_cell=9223372036854775807"], "body.0.points_per_cell: ", "error E0010: "),
+        (&["analysis.steps=1000000000000"], "analysis.steps: ", "error E0010: "),
     ];
     for (set, key, says) in rows {
         let scratch = Scratch::with_case(COLUMN);
