@@ -337,7 +337,7 @@ fn a_run_that_has_ended_is_never_begun_again_by_itself() {
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let before = std::fs::read(scratch.path("case.out/history.csv")).unwrap();
     let further = ["case.toml", "-q", "--set", "analysis.end=0.06", "--restart", "auto"];
-    scratch.mpirun(2, &further).expect(76).says_once("has finished without a checkpoint");
+    scratch.mpirun(2, &further).expect(76).says_once("error E0726: ");
     let shorter = ["case.toml", "-q", "--set", "analysis.end=0.04", "--restart", "auto"];
     scratch.mpirun(2, &shorter).expect(0).says_once("is already complete");
     assert_eq!(std::fs::read(scratch.path("case.out/history.csv")).unwrap(), before);
