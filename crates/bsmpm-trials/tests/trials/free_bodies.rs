@@ -275,7 +275,7 @@ fn bodies_that_approach_each_other_are_warned_of_with_the_distance() {
     };
     let near = "W0229: body.0 and body.1 come closer than a cell at about t = 0.30";
     assert!(warned(&[]).contains(near), "{}", warned(&[]));
-    assert!(warned(&[]).contains("from 1.5 cells (0.15 m) on"));
+    assert!(warned(&[]).contains("from a distance of 1.5 cells (0.15 m)"));
     for apart in ["body.0.velocity=[-1, 0]", "body.1.velocity=[1, 0]", "body.0.velocity=[0, 2]", "analysis.end=0.2"] {
         assert!(!warned(&[apart]).contains("W0229"), "{apart}");
     }
