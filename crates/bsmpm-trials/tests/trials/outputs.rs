@@ -269,7 +269,7 @@ fn the_manifest_explains_a_finished_run() {
     );
     assert!(manifest.failure.is_none() && manifest.checkpoint.is_none() && manifest.warnings.is_empty());
     let background = manifest.choices.iter().find(|choice| choice.key == "solver.background").unwrap();
-    assert!(background.value == "0.0001" && background.reason.contains("quasi-static"), "{background:?}");
+    assert!(background.value == "0.0001" && background.reason.contains("nearly empty cells"), "{background:?}");
     assert_eq!(manifest.sizes.get("most_background_cells"), Some(&16));
     let check = &manifest.checks[0];
     assert!(check.passed && check.value == history(&directory).get("height").unwrap().last().copied(), "{check:?}");
