@@ -129,5 +129,5 @@ fn the_choice_for_flow_is_noted_and_refused_without_inertia() {
     let still = changed(DAM_BREAK, "\"dynamic\", end = 2.0", "\"quasi-static\", wall_velocity = \"own\"");
     scratch.write("still.toml", still);
     let refused = scratch.direct(&["still.toml", "--check"]).expect(65);
-    assert!(refused.stderr.contains("points have no velocity"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("error E0218: analysis.wall_velocity: "), "{}", refused.stderr);
 }
