@@ -64,8 +64,9 @@ fn an_interrupted_script_stops_the_run_and_says_how_to_continue() {
     let [solver, companion] = ["bsmpm-par", "bsmpm"].map(|name| executable(name).to_str().unwrap());
     program(&programs, "cargo", &CARGO.replace("SOLVER", solver).replace("COMPANION", companion));
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/run");
-    let mut command = Command::new("bash");
-    command.arg(&script).arg("case.toml").current_dir(scratch.path(""));
+    // Jobs in the background ignore the signal, and so would all that they start.
+    let mut command = Command::new("env");
+    command.args(["--default-signal=INT", "bash"]).arg(&script).arg("case.toml").current_dir(scratch.path(""));
     command.env("PATH", format!("{}:{}", programs.display(), std::env::var("PATH").unwrap()));
     let mut running = processes::start(command, &[], Ears::Open, Duration::from_secs(120));
     running.until("its tenth step", || {
