@@ -153,7 +153,7 @@ fn ground_beside_a_free_field_is_built_and_then_shakes() {
     }
     for (wrong, reported) in [
         ("stage.0.at=0.15", "let [shaking] begin later"),
-        ("body.1.polygon=[[0.5, 4], [9, 4], [8, 5], [4, 5]]", "error E0248: "),
+        ("body.1.polygon=[[0.5, 4], [9, 4], [8, 5], [4, 5]]", "error E0628: stage.0.add: "),
     ] {
         scratch.mpirun(1, &["case.toml", "--check", "--set", wrong]).expect(65).says_once(reported);
     }

@@ -233,7 +233,10 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
         assert!(of("toe")[0] > 0 && of("ahead")[0] == 0 && of("ahead")[3] > 0 && of("never") == [0; 4], "{counts:?}");
         let warned = manifest(&one).warnings;
         let never = QUANTITIES.map(|quantity| format!("never-{quantity}")).join(", ");
-        assert!(warned.iter().any(|warning| warning.contains(&format!("the box of these histories: {never}."))), "{warned:?}");
+        assert!(
+            warned.iter().any(|warning| warning.contains(&format!("the box of these histories: {never}."))),
+            "{warned:?}"
+        );
         // Sums are exact: the same bits as long as what is summed is.
         for ranks in [3, 1] {
             let name = goes_the_same_way(&scratch, &["history.csv"], (ranks, 1e-9));
