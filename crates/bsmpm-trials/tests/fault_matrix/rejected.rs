@@ -13,7 +13,7 @@ fn fault(step: u64) -> String {
 
 #[track_caller]
 fn was_rejected(run: &Path, step: u64) {
-    let reported = format!("step {step} converged and was rejected");
+    let reported = format!("W0725: step {step} is repeated");
     let warnings = manifest(run).warnings;
     assert_eq!(warnings.iter().filter(|warning| warning.contains(&reported)).count(), 1, "{warnings:?}");
 }
