@@ -161,7 +161,7 @@ impl Ledger {
 
     /// A row of `history.csv`; the checks whose time this is take their value, or none where a column's is not
     /// `is_reported`.
-    pub fn history(&mut self, (step, time): (u64, f64), row: &[f64], is_reported: &[bool]) -> Result<(), Error> {
+    pub fn history(&mut self, step: u64, time: f64, row: &[f64], is_reported: &[bool]) -> Result<(), Error> {
         let mut cells = vec![Cell::Int(step), Cell::Float(time)];
         cells.extend(row.iter().map(|&value| Cell::Float(value)));
         for check in &mut self.manifest.checks {

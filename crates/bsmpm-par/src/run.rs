@@ -237,7 +237,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             ledger.front(front);
         }
         let written =
-            self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history((step, time), &row, &self.recorder.reported()));
+            self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history(step, time, &row, &self.recorder.reported()));
         self.require(written);
     }
 

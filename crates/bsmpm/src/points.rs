@@ -24,6 +24,16 @@ pub struct ColumnInfo {
     pub frame: Option<&'static str>,
 }
 
+/// The name of a column in checkpoints: that of its field, unless older checkpoints have another one.
+macro_rules! column_name {
+    ($field:ident) => {
+        stringify!($field)
+    };
+    ($field:ident $name:literal) => {
+        $name
+    };
+}
+
 /// The columns, each with its type, unit, name in frames, and what it starts from. Seeding, sorting, migration,
 /// checkpoints and frames walk this list, so that a new state variable is one line.
 macro_rules! columns {
@@ -32,7 +42,7 @@ macro_rules! columns {
         dynamic { $($(#[$moving_doc:meta])+
             $moving:ident: $MovingType:ty, $moving_unit:literal, $moving_frame:expr, |$moving_seed:ident| $moving_start:expr;)+ }
         some { $($(#[$some_doc:meta])+
-            $some:ident: $SomeType:ty, $some_unit:literal, $some_frame:expr, || $some_start:expr;)+ }
+            $some:ident $(as $some_name:literal)?: $SomeType:ty, $some_unit:literal, $some_frame:expr, || $some_start:expr;)+ }
     ) => {
         /// Velocity and acceleration; absent in quasi-static scenes.
         #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,7 +71,7 @@ macro_rules! columns {
             pub const COLUMNS: &'static [ColumnInfo] = &[
                 $(ColumnInfo { name: stringify!($name), unit: $unit, frame: $frame },)+
                 $(ColumnInfo { name: stringify!($moving), unit: $moving_unit, frame: $moving_frame },)+
-                $(ColumnInfo { name: stringify!($some), unit: $some_unit, frame: $some_frame },)+
+                $(ColumnInfo { name: column_name!($some $($some_name)?), unit: $some_unit, frame: $some_frame },)+
             ];
 
             /// Adds a stress-free point at rest or with its initial velocity, with every column that is there.
@@ -82,7 +92,7 @@ macro_rules! columns {
                 let has = |name| names.contains(&name);
                 Self {
                     motion: [$(stringify!($moving)),+].into_iter().all(has).then(Motion::default),
-                    $($some: has(stringify!($some)).then(Default::default),)+
+                    $($some: has(column_name!($some $($some_name)?)).then(Default::default),)+
                     state: has(LAW_STATE).then(|| Rows::of(state)),
                     ..Self::default()
                 }
@@ -95,7 +105,7 @@ macro_rules! columns {
                     $(columns.push((stringify!($moving), &mut motion.$moving));)+
                 }
                 $(if let Some(column) = &mut self.$some {
-                    columns.push((stringify!($some), column));
+                    columns.push((column_name!($some $($some_name)?), column));
                 })+
                 columns.extend(self.state.as_mut().map(|state| (LAW_STATE, state as &mut dyn Column)));
                 columns
@@ -109,7 +119,7 @@ macro_rules! columns {
                 $(if name == stringify!($moving) {
                     return self.motion.as_ref().map(|motion| &motion.$moving as &dyn Column);
                 })+
-                $(if name == stringify!($some) {
+                $(if name == column_name!($some $($some_name)?) {
                     return self.$some.as_ref().map(|column| column as &dyn Column);
                 })+
                 None
@@ -165,8 +175,8 @@ columns! {
         /// -  part of what its F makes a point reach to a side that it has beside rigid bodies, if there are any: at
         ///   the start as far as they leave it, then as the steps have left it; of points that come later it is 1
         extent: Vec<f64>, "-", None, || 1.0;
-        /// N  force of a rigid body along its outline, where bodies rub, from the first step on; before that it is 0
-        grip: Vec<Vector<D>>, "N", None, || Vector::zeros();
+        /// N  tangential force of a rigid body with friction, from the first step on; before that it is 0
+        tangential_force as "grip": Vec<Vector<D>>, "N", None, || Vector::zeros();
         /// Pa  excess pore pressure, where water flows, from the first step on; before that it is 0
         pore_pressure: Vec<f64>, "Pa", None, || 0.0;
         /// Pa/m  gradient of the whole pore pressure, where water flows, from the first step on; before that it is that

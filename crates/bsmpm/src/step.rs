@@ -115,7 +115,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         points.extent = Some(extent);
     }
     if carried.is_some() {
-        points.grip = carried;
+        points.tangential_force = carried;
     }
     let account = draft.map(|draft| draft.close(model, points, &surface, halo));
     let places = surface.anchors.places((&model.boundary, &model.grid), points.anchored(), halo);

@@ -61,7 +61,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     };
     let (placed, left): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(place, _)| is_placed(place));
     if let Some(((axis, line), reason)) = left.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
-        let place = place_of(case, (*axis, *line));
+        let place = place_of(case, *axis, *line);
         report.warn(match chosen {
             C0Lines::None => format!(
                 "W0216: grid.c0_lines: there is no C0 line (where strains may jump) at {place} ({reason}). Stresses \
@@ -79,7 +79,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
         report.warn(format!(
             "W0218: grid.c0_lines: at the C0 line {} the undrained strength of material.{name} is inaccurate, because \
              this material has friction. Loads can be off by 4 %. Compare a run with friction_angle = 0.",
-            place_of(case, (axis, line))
+            place_of(case, axis, line)
         ));
     }
     for ((axis, line), reason) in placed {
@@ -87,13 +87,13 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
             crossed = crossed.or(Some((axis, line)));
         }
         insert(case, axis, line);
-        report.note("grid.c0_lines", place_of(case, (axis, line)), reason);
+        report.note("grid.c0_lines", place_of(case, axis, line), reason);
     }
-    if let Some(line) = crossed.filter(|_| case.flow.is_some()) {
+    if let Some((axis, line)) = crossed.filter(|_| case.flow.is_some()) {
         report.warn(format!(
             "W0219: grid.c0_lines: saturated soil that moves across the C0 line at {} loses volume, so loads become \
              too small. Increase points_per_cell, or set grid.c0_lines = \"none\".",
-            place_of(case, line)
+            place_of(case, axis, line)
         ));
     }
     found.doubts.into_values().for_each(|doubt| report.warn(doubt));
@@ -148,7 +148,7 @@ pub(super) fn has_interface(case: &Case) -> bool {
 }
 
 /// Where the grid line of an axis with a number is, in words.
-fn place_of(case: &Case, (axis, line): (usize, usize)) -> String {
+fn place_of(case: &Case, axis: usize, line: usize) -> String {
     let along = &case.grid.axes[axis];
     format!("{} = {} m", NAMES[axis], along.lower() + along.breakpoint(line))
 }

@@ -199,7 +199,8 @@ pub const ROWS: &[Row] = &[
         what: "overlapping bodies",
         edits: &[(
             "[[history]]\nquantity = \"max-displacement\"\n",
-            "[[history]]\nquantity = \"max-displacement\"\n\n[[body]]\nmaterial = \"soil\"\nbox = { lower = [2.0, 2.0], upper = [5.0, 5.0] }\n",
+            "[[history]]\nquantity = \"max-displacement\"\n\n\
+             [[body]]\nmaterial = \"soil\"\nbox = { lower = [2.0, 2.0], upper = [5.0, 5.0] }\n",
         )],
         says: Says::Warning(&["W0213", "subtract"]),
     },
@@ -208,7 +209,8 @@ pub const ROWS: &[Row] = &[
         what: "a loose second body",
         edits: &[(
             "[[history]]\nquantity = \"max-displacement\"\n",
-            "[[history]]\nquantity = \"max-displacement\"\n\n[[body]]\nname = \"rock\"\nmaterial = \"soil\"\nbox = { lower = [33.0, 5.0], upper = [36.0, 8.0] }\n",
+            "[[history]]\nquantity = \"max-displacement\"\n\n\
+             [[body]]\nname = \"rock\"\nmaterial = \"soil\"\nbox = { lower = [33.0, 5.0], upper = [36.0, 8.0] }\n",
         )],
         says: Says::Warning(&["W0107", "body.1 `rock`", "x and y"]),
     },
@@ -217,7 +219,8 @@ pub const ROWS: &[Row] = &[
         what: "gap of 0.1 m between layers",
         edits: &[(
             "[[body]]\nmaterial = \"soil\"\npolygon  = [[0.0, 0.0], [32.0, 0.0], [12.0, 10.0], [0.0, 10.0]]\n",
-            "[[body]]\nmaterial = \"soil\"\nbox = { lower = [0.0, 0.0], upper = [40.0, 4.9] }\n\n[[body]]\nmaterial = \"soil\"\nbox = { lower = [0.0, 5.0], upper = [40.0, 10.0] }\n",
+            "[[body]]\nmaterial = \"soil\"\nbox = { lower = [0.0, 0.0], upper = [40.0, 4.9] }\n\n\
+             [[body]]\nmaterial = \"soil\"\nbox = { lower = [0.0, 5.0], upper = [40.0, 10.0] }\n",
         )],
         says: Says::Warning(&["body.0 and body.1", "apart"]),
     },
@@ -299,7 +302,8 @@ pub const ROWS: &[Row] = &[
         what: "footing in the air",
         edits: &[(
             "[[history]]\nquantity = \"max-displacement\"\n",
-            "[[history]]\nquantity = \"max-displacement\"\n\n[footing]\nfrom = [20.0, 8.0]\nto = [22.0, 8.0]\ndisplacement = [0.0, -0.1]\ninterface = \"smooth\"\n",
+            "[[history]]\nquantity = \"max-displacement\"\n\n\
+             [footing]\nfrom = [20.0, 8.0]\nto = [22.0, 8.0]\ndisplacement = [0.0, -0.1]\ninterface = \"smooth\"\n",
         )],
         says: Says::Errors(1, &["E0233"]),
     },

@@ -268,9 +268,9 @@ impl<const D: usize> RigidContacts<D> {
             return Ok(0);
         }
         let motions = self.found(u, halo);
-        let doubt = (force, ROUNDING * self.edge);
+        let length = ROUNDING * self.edge;
         let moved: Vec<Vector<D>> = self.points.iter().map(|point| self.moved(point, u, &motions)).collect();
-        let statuses = self.points.iter().zip(&moved).map(|(point, moved)| point.corrected(moved, doubt));
+        let statuses = self.points.iter().zip(&moved).map(|(point, moved)| point.corrected(moved, force, length));
         let statuses: Vec<(ContactStatus, f64)> = statuses.collect();
         let kind = usize::from(D > 2) + usize::from(D > 2 && self.dt == 0.0);
         let share = if passes < AT_ONCE[kind] {

@@ -136,7 +136,8 @@ impl<const D: usize> RigidContacts<D> {
                 let pores = around.pore_pressure.filter(|_| body.friction > 0.0);
                 let water =
                     pores.map_or(0.0, |pores| pressing(pores, around, (patch.first_node, p), (&normal, &place)));
-                let carried = points.grip.as_ref().map_or([0.0; 2], |carried| along(&tangents, &carried[p]));
+                let carried =
+                    points.tangential_force.as_ref().map_or([0.0; 2], |carried| along(&tangents, &carried[p]));
                 self.points.push(RigidPoint {
                     body: number,
                     point: p,

@@ -265,7 +265,7 @@ impl<const D: usize> RigidPoint<D> {
     /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m;
     /// and by how much it contradicts the one that is, N: of what has moved too far, what soil would have resisted
     /// with.
-    pub fn corrected(&self, moved: &Vector<D>, (force, length): (f64, f64)) -> (ContactStatus, f64) {
+    pub fn corrected(&self, moved: &Vector<D>, force: f64, length: f64) -> (ContactStatus, f64) {
         let soil = 1.0 / super::PENALTY;
         if self.status == ContactStatus::Open {
             let depth = -self.gap_after(moved);
@@ -282,13 +282,13 @@ impl<const D: usize> RigidPoint<D> {
             ContactStatus::Stick if size(along) > limit + force => {
                 (ContactStatus::Slip(along.map(|part| part / size(along))), size(along) - limit)
             }
-            ContactStatus::Slip(towards) if towards != [0.0; 2] => self.slip_on(towards, moved, (limit, force)),
+            ContactStatus::Slip(towards) if towards != [0.0; 2] => self.slip_on(towards, moved, limit, force),
             status => (status, 0.0),
         }
     }
 
-    /// As [`Self::corrected`] of what slides.
-    fn slip_on(&self, towards: Along, moved: &Vector<D>, (limit, force): (f64, f64)) -> (ContactStatus, f64) {
+    /// As [`Self::corrected`] of a point that slips `towards`; `limit`: the largest friction force, N.
+    fn slip_on(&self, towards: Along, moved: &Vector<D>, limit: f64, force: f64) -> (ContactStatus, f64) {
         let (soil, held) = (1.0 / super::PENALTY, self.held(moved));
         let against = product(towards, held);
         let sticks = if D == 2 { against < limit - force } else { size(held) < limit - force || against <= 0.0 };
