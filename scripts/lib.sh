@@ -15,11 +15,17 @@ die() {
     exit 1
 }
 
-# build ARGUMENTS...: cargo with the arguments in the workspace; prints the path of each executable that it made.
-build() {
-    local messages
-    messages=$(cd -- "$root" && cargo "$@" --message-format=json-render-diagnostics </dev/null) || return
+# build_in TREE ARGUMENTS...: cargo with the arguments in a work tree; prints the path of each executable that it made.
+build_in() {
+    local tree=$1 messages
+    shift
+    messages=$(cd -- "$tree" && cargo "$@" --message-format=json-render-diagnostics </dev/null) || return
     sed -n 's/.*"executable":"\([^"]*\)".*/\1/p' <<<"$messages"
+}
+
+# build ARGUMENTS...: the same in the workspace.
+build() {
+    build_in "$root" "$@"
 }
 
 # build_programs: both programs, optimised; sets `solver` and `companion`.
@@ -33,7 +39,7 @@ build_programs() {
 # solver_of COMMIT: the solver of a commit, built in a work tree of its own under target/commits unless that was done before; of
 # `.` that of the working tree. Prints its path.
 solver_of() {
-    local sha tree made=$root/target/commits
+    local sha tree built made=$root/target/commits
     if [[ $1 == . ]]; then
         build build --release --package bsmpm-par --bins | grep '/bsmpm-par$' && return
     fi
@@ -44,8 +50,8 @@ solver_of() {
         git -C "$root" worktree prune
         mkdir -p -- "$made"
         git -C "$root" worktree add --quiet --force --detach "$tree" "$sha" >&2 || return
-        (root=$tree CARGO_TARGET_DIR=$made/build && export CARGO_TARGET_DIR &&
-            cp -- "$(build build --release --package bsmpm-par --bins | grep '/bsmpm-par$')" "$made/bsmpm-par-$sha") || return
+        built=$(CARGO_TARGET_DIR=$made/build build_in "$tree" build --release --package bsmpm-par --bins) || return
+        cp -- "$(grep '/bsmpm-par$' <<<"$built")" "$made/bsmpm-par-$sha" || return
         git -C "$root" worktree remove --force "$tree"
     fi
     printf '%s\n' "$made/bsmpm-par-$sha"

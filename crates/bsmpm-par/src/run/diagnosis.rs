@@ -172,7 +172,7 @@ fn starts_at_rest(case: &Case) -> bool {
 /// What the case was warned of as probably not meant: it may well be why a step fails.
 fn implausible(case: &Case) -> Vec<String> {
     let is_slip = |warning: &&String| code_of(warning).is_some_and(|code| code.starts_with("W01"));
-    case.warnings.iter().filter(is_slip).map(|warning| format!("heed the warning at the start, {warning}")).collect()
+    case.warnings.iter().filter(is_slip).map(|warning| format!("Check this warning first: {warning}")).collect()
 }
 
 /// What helps where soil without cohesion has a free surface that its weight alone brings to failure.

@@ -46,9 +46,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if !manifest.indicators.is_empty() {
             self.log.detail("indicators", &indicators::line(&manifest.indicators));
         }
-        // Those that end the run have been named.
         let unusual = manifest.indicators.iter().filter(|(_, found)| found.unusual);
-        for (name, found) in unusual.clone().filter(|(_, found)| !found.ends_run()) {
+        // A complete run has named those that end it.
+        let is_complete = [exit::DONE, exit::CHECK, exit::INDICATOR].contains(&code);
+        for (name, found) in unusual.clone().filter(|(_, found)| !(is_complete && found.ends_run())) {
             self.log.warning("indicator", &indicators::description(name, found));
         }
         if manifest.summary.settled_steps > 0 {

@@ -9,7 +9,7 @@ mod value;
 
 use crate::case::Case;
 use crate::record::Record;
-use crate::report::Report;
+use crate::report::{Report, brief};
 
 /// Warns of what is possible, but probably not meant.
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
@@ -52,7 +52,7 @@ impl Scale {
 impl Scale {
     /// The stress in words, if it is known.
     fn shown(&self) -> String {
-        self.stress.map_or(String::new(), |stress| format!(" ({:.3} kPa)", 1e-3 * stress))
+        self.stress.map_or(String::new(), |stress| format!(" ({} kPa)", brief(1e-3 * stress)))
     }
 }
 

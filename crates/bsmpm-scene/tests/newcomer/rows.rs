@@ -8,7 +8,7 @@ pub const ROWS: &[Row] = &[
         number: "1",
         what: "cohesion in Pa for kPa",
         edits: &[("\"10 kPa\"", "10.0")],
-        says: Says::Warning(&["W0102", "10 Pa (0.01 kPa)", "200.000 kPa", "write \"10 kPa\""]),
+        says: Says::Warning(&["W0102", "10 Pa (0.01 kPa)", "200 kPa", "write \"10 kPa\""]),
     },
     Row {
         number: "2",

@@ -21,7 +21,7 @@ fn a_step_that_fails_repeats_the_warning_of_a_probable_slip() {
     for (part, by, warning) in slips {
         let output = Scratch::with_case(&changed(SLOPE, part, by)).direct(&["case.toml"]).expect(80);
         output.says_once(&format!("warning {warning}"));
-        output.says_once(&format!("heed the warning at the start, {warning}"));
+        output.says_once(&format!("Check this warning first: {warning}"));
     }
 }
 
