@@ -103,6 +103,12 @@ pub const ROWS: &[Row] = &[
         edits: &[("\"10 kPa\"", "\"10 t/m2\"")],
         says: Says::Errors(1, &["tf/m2"]),
     },
+    Row {
+        number: "15b",
+        what: "a stress in psf",
+        edits: &[("\"10 kPa\"", "\"200 psf\"")],
+        says: Says::Errors(1, &["E0020", "`psf`", "kPa"]),
+    },
     Row { number: "16", what: "misspelt key", edits: &[("poisson", "poison")], says: Says::Errors(1, &["`poisson`"]) },
     Row {
         number: "17",

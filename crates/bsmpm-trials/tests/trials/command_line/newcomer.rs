@@ -1,5 +1,5 @@
 //! Wrong inputs of a newcomer that need a run (the others: `bsmpm-scene/tests/newcomer`): a case that was warned of as
-//! probably not meant, and then fails, says so once more.
+//! probably not meant, and then fails, says so once more; files that are no case; directories; restarts.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
@@ -40,4 +40,48 @@ fn a_record_of_peer_ends_with_65_and_the_way_to_convert_it() {
                   NPTS=  8, DT= .0200 SEC\n  .1E-03  .2E-03 .3E-03 .1E-02\n";
     scratch.write("rec.at2", record);
     scratch.direct(&["case.toml"]).expect(65).says_once("error E0049: rec.at2: ");
+}
+
+/// Row 44: what is no case.
+#[test]
+fn a_file_that_is_no_case_is_refused_with_what_it_is() {
+    let scratch = Scratch::new();
+    std::fs::create_dir(scratch.path("folder.toml")).expect("a folder");
+    std::fs::write(scratch.path("binary.toml"), b"\x7fELF\x02\x01\x01\0\0").expect("a binary file");
+    std::fs::write(scratch.path("large.toml"), vec![b'#'; (16 << 20) + 1]).expect("a large file");
+    scratch.write("empty.toml", "");
+    scratch.write("text.toml", "Dear colleague, this is my slope.\n");
+    let rows = [
+        ("empty.toml", 65, "error E0003: the file is empty or has only comments. Check the name of the file."),
+        ("text.toml", 65, "text.toml:1:6: error E0005: the line does not follow the TOML format"),
+        ("binary.toml", 65, "error E0002: the file is not plain text: line 1 has a zero byte"),
+        ("large.toml", 65, "error E0004: the file is larger than 16 MiB, the limit for a case file."),
+        ("folder.toml", 66, "error E0001: the file cannot be read: it is a directory, pipe or device."),
+    ];
+    for (name, code, says) in rows {
+        scratch.direct(&[name]).expect(code).says_once(says);
+    }
+}
+
+/// Row 45: a full disk is among the tests of `fault_matrix`.
+#[test]
+fn an_output_directory_that_cannot_be_made_is_named_with_the_remedy() {
+    let scratch = Scratch::with_case(SLOPE);
+    scratch.write("file", "");
+    for directory in ["file/below", "/proc/run"] {
+        let output = scratch.direct(&["case.toml", "-o", directory]).expect(73);
+        output.says_once(&format!("error E0767: the system cannot create the output directory `{directory}`"));
+        output.says_once("Choose another directory with `-o`.");
+    }
+}
+
+/// Row 48.
+#[test]
+fn a_restart_with_another_value_names_the_value_and_both_ways_out() {
+    let scratch = Scratch::with_case(SLOPE);
+    scratch.direct(&["case.toml", "--max-steps", "2"]).expect(75);
+    let output = scratch.direct(&["case.toml", "--restart", "auto", "--set", "material.soil.young=3e7"]).expect(76);
+    output.says_once("error E0721: the case has changed since the run in the output directory: ");
+    output.says_once("material.soil.young was 100000000.0, and is 30000000.0");
+    output.says_once("Restore the old values, or start again with `--force`.");
 }
