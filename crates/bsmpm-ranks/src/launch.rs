@@ -93,7 +93,9 @@ fn abort_on_panic(end: fn(&SimpleCommunicator, &str) -> !) {
 
 /// Ends the job on all ranks with `code`, for failures that the other ranks do not know of.
 pub fn abort(world: &SimpleCommunicator, code: u8) -> ! {
-    if mpi::environment::is_initialized() && !mpi::environment::is_finalized() {
+    // A rank alone has nobody to end, and Open MPI would print nine lines about its abort.
+    let is_running = mpi::environment::is_initialized() && !mpi::environment::is_finalized();
+    if is_running && world.size() > 1 {
         world.abort(i32::from(code));
     }
     std::process::exit(i32::from(code));

@@ -138,7 +138,7 @@ impl Error {
     /// Those of a case, or of reference points, that cannot be read.
     pub(crate) fn unread(what: &str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         move |source| Self::Missing {
-            reason: format!("E0843: the {what} {} cannot be read: {source}. Check the path.", path.display()),
+            reason: format!("E0001: the {what} {} cannot be read: {source}. Check the path.", path.display()),
         }
     }
 

@@ -183,7 +183,7 @@ fn against_local_failure(case: &Case) -> Option<String> {
     (is_at_rest && case.gravity.is_some()).then(|| {
         format!(
             "material.{} has no cohesion: a free surface as steep as its friction angle, and the toe of a slope, fail under \
-             their own weight. Give it a small cohesion, such as \"0.1 kPa\", or make the slope flatter",
+             their own weight. Give it a small cohesion, such as \"0.1 kPa\", or make the slope flatter.",
             case.materials[body.material].name
         )
     })

@@ -297,7 +297,7 @@ impl Ground<'_> {
                      inflow a `name`, and list the name in `activate` of the stage that adds the body."
                 ),
                 None => format!(
-                    "E0512: no soil lies at {at:.3?} m, nor up to half a spacing of material points from there. Move \
+                    "E0401: no soil lies at {at:.3?} m, nor up to half a spacing of material points from there. Move \
                      the drain or inflow to the surface of the soil."
                 ),
             };
@@ -315,7 +315,7 @@ fn named(root: &Record, report: &mut Report<'_>) {
         let Some(name) = record.text("name") else { continue };
         if drains[..number].iter().any(|other| other.text("name") == Some(name)) {
             let message = format!(
-                "E0513: another drain is also called `{name}`, so histories and stages cannot tell which one is \
+                "E0421: another drain is also called `{name}`, so histories and stages cannot tell which one is \
                  meant. Give each drain its own `name`."
             );
             record.error("name", message, report);

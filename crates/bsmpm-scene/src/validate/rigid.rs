@@ -155,7 +155,7 @@ fn friction(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Op
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
-            "W0409: {}: {friction} is above the largest verified friction coefficient, {MOST_SHOWN_FRICTION}, so \
+            "W0204: {}: {friction} is above the largest verified friction coefficient, {MOST_SHOWN_FRICTION}, so \
              steps may not converge. Use at most {MOST_SHOWN_FRICTION}.",
             record.path_of("friction_coefficient")
         ));

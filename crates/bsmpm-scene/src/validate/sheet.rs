@@ -40,7 +40,7 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
     };
     let at_bodies = |all: Vec<Triangle>| match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
         Some(at) => Err(format!(
-            "E0233: at the start of the analysis no body lies at {at:.3?} m. Move the loaded surface to the surface \
+            "E0401: at the start of the analysis no body lies at {at:.3?} m. Move the loaded surface to the surface \
              of a body."
         )),
         None if all.is_empty() => {

@@ -48,7 +48,7 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
     if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
         let message = format!(
-            "E0233: at the start of the analysis no body lies between {from:.3?} and {to:.3?} m. Move this place \
+            "E0401: at the start of the analysis no body lies between {from:.3?} and {to:.3?} m. Move this place \
                  to the surface of a body."
         );
         record.consequence(key, message, &["body"], report);

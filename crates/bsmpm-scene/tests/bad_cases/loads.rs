@@ -206,8 +206,8 @@ pub const STRIPS: &[Row] = &[
     row(SHAKEN, "[[0.1, \"1 m\", 0.0]]", "shaking.acceleration", "found `m`, a unit of length"),
     row(SHAKEN, "{ file = \"kobe.csv\" }", "shaking.acceleration", "E0027"),
     // Points of the block are 0.25 m apart, those of sand 0.167 m and of clay 0.25 m.
-    row("from = [1.0, 2.5]\nto   = [\"2 m\", 2.5]", "from = [1.25, 2.63]\nto = [1.75, 2.63]", "footing.from", "E0233"),
-    row("from = [2.5, 2.5]\nto   = [3.0, 2.5]", "from = [2.5, 2.63]\nto = [3.0, 2.63]", "prescribed.1.from", "E0233"),
+    row("from = [1.0, 2.5]\nto   = [\"2 m\", 2.5]", "from = [1.25, 2.63]\nto = [1.75, 2.63]", "footing.from", "E0401"),
+    row("from = [2.5, 2.5]\nto   = [3.0, 2.5]", "from = [2.5, 2.63]\nto = [3.0, 2.63]", "prescribed.1.from", "E0401"),
     row("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "from = [0.0, 1.4]\nto = [1.0, 1.4]", "traction.0.from", "E0401"),
     row("to   = [1.0, 1.25]", "to = [1.0, 1.5]", "traction.0.from", "E0401").up(1),
     row("at = [3.5, 1.25]", "at = [2.25, 1.45]", "point_load.0.at", "E0401"),

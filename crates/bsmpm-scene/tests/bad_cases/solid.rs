@@ -23,8 +23,8 @@ const PERMEABLE: &str = "density = 2000\nporosity = 0.4\ndrainage = \"coupled\"\
 /// Changes of `solid.toml`.
 pub const WET: &[Row] = &[
     row("upper = [2.0, 3.0, 1.5] }\nseepage", "upper = [2.5, 3.0, 1.5] }\nseepage", "drain.0.rectangle", "E0234"),
-    row("disc     = { centre = [1.0", "disc = { centre = [3.5", "drain.1.disc", "E0512"),
-    row("upper = [1.0, 3.0, 1.5] }\nrate", "upper = [3.0, 3.0, 1.5] }\nrate", "inflow.0.rectangle", "E0512"),
+    row("disc     = { centre = [1.0", "disc = { centre = [3.5", "drain.1.disc", "E0401"),
+    row("upper = [1.0, 3.0, 1.5] }\nrate", "upper = [3.0, 3.0, 1.5] }\nrate", "inflow.0.rectangle", "E0401"),
     row("disc = { centre = [1.5, 1.0, 1.5], radius = 0.4 }", "from = [0, 0]\nto = [1, 0]", "inflow.1.from", "E0225"),
     row(
         "rectangle = { lower = [2.0, 0.0, 0.0], upper = [2.0, 3.0, 1.5] }",
@@ -178,7 +178,7 @@ pub const SOLID: &[Row] = &[
         "footing.rectangle",
         "shorter than a cell (0.5 m)",
     ),
-    row(PLATE, "rectangle = { lower = [0.5, 2, 2.8], upper = [1.5, 3, 2.8] }", "footing.rectangle", "E0233"),
+    row(PLATE, "rectangle = { lower = [0.5, 2, 2.8], upper = [1.5, 3, 2.8] }", "footing.rectangle", "E0401"),
     row(PLATE, "disc = { centre = [1.0, 2.5, 1.0], radius = 0 }", "footing.disc.radius", "radius > 0"),
     row(
         PLATE,
@@ -202,7 +202,7 @@ pub const SOLID: &[Row] = &[
     row(LOADED, "rectangle = { lower = [0.5, 1.0, 2.0], upper = [1.5, 2.0, 2.0] }", "traction.0.rectangle", "no body"),
     row(LOADED, "from = [0, 1]\nto = [1, 1]", "traction.0.from", "E0225"),
     row("centre = [3, 1.5", "centre = [9, 1.5", "traction.2.sphere", "no part of the sphere is inside the grid"),
-    row("2.0], radius = 0.5 }\nstress", "2.0], radius = 1.5 }\nstress", "traction.2.sphere", "E0233"),
+    row("2.0], radius = 0.5 }\nstress", "2.0], radius = 1.5 }\nstress", "traction.2.sphere", "E0401"),
     row("2.0], radius = 0.5 }\nstress", "2.0], radius = 51 }\nstress", "traction.2.sphere", "loaded points"),
     row(
         "2.0], radius = 0.5 }\nstress = [0, 0, \"1 kPa\"]",

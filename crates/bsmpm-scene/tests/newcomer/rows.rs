@@ -311,7 +311,7 @@ pub const ROWS: &[Row] = &[
             "[[history]]\nquantity = \"max-displacement\"\n\n\
              [footing]\nfrom = [20.0, 8.0]\nto = [22.0, 8.0]\ndisplacement = [0.0, -0.1]\ninterface = \"smooth\"\n",
         )],
-        says: Says::Errors(1, &["E0233"]),
+        says: Says::Errors(1, &["E0401"]),
     },
     Row {
         number: "47b",

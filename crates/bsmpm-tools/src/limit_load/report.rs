@@ -201,7 +201,7 @@ impl GridLoad {
         let changed = 100.0 * change;
         let warning = match (*load <= 0.0, *change > 0.0) {
             (true, _) => format!(
-                "W0850: on cells of {cell} m the soil does not resist `{name}`, so there is no limit load. Check that \
+                "W0726: on cells of {cell} m the soil does not resist `{name}`, so there is no limit load. Check that \
                  `{name}` touches the soil and moves towards it."
             ),
             (_, true) => format!(
