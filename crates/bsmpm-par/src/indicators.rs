@@ -10,6 +10,7 @@ mod text;
 
 pub use report::{acceptance, description, line};
 
+use crate::log::short;
 use crate::record::Recorder;
 use crate::setup;
 use bsmpm::energy::{Budget, Stored};
@@ -222,11 +223,6 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
         .map(|(excess, all)| ("wall-velocity", Indicator::new(share(excess, all), "-", "", [-BESIDE, BESIDE])));
     let penetration = summary.deepest_penetration.map(|depth| ("rigid-penetration", at_most(PENETRATION, depth)));
     [pull, setback, background, load_share, loss, advance, beside, penetration].into_iter().flatten()
-}
-
-/// A time without the last digits, in which it differs from a round number.
-fn short(t: f64) -> f64 {
-    format!("{t:.9e}").parse().unwrap_or(t)
 }
 
 /// What the soft background takes of the work, if there is one: over all steps, or where a limit load is read at the

@@ -226,7 +226,7 @@ fn doubt(
         let denser = || {
             format!(
                 "W0221: the density of material.{a} and material.{b} differs by a factor of {}. Stresses in the cells \
-                 next to their interface at {at:?} m are inaccurate. Use smaller cells at the interface.",
+                 next to their interface at {at:.3?} m are inaccurate. Use smaller cells at the interface.",
                 brief(densities)
             )
         };
@@ -237,7 +237,7 @@ fn doubt(
     }
     let unfitted = || {
         format!(
-            "W0222: the interface of material.{a} and material.{b} is not on a grid line, first at {at:?} m. Stresses \
+            "W0222: the interface of material.{a} and material.{b} is not on a grid line, first at {at:.3?} m. Stresses \
              within three cells are off by tens of per cent. Put a grid line there (grid.knots)."
         )
     };

@@ -266,7 +266,7 @@ fn a_load_that_starts_away_from_every_body_is_an_error_of_the_case() {
     let case = changed(LOADED, "at    = [5.0, 4.5]", "at    = [5.0, 4.9]");
     let scratch = Scratch::with_case(&case);
     let output = scratch.mpirun(2, &["case.toml", "-q"]);
-    assert!(output.stderr.contains("error E0401: point_load.0.at: no body lies at [5.0, 4.9]"), "{output:#?}");
+    assert!(output.stderr.contains("error E0401: point_load.0.at: no body lies at [5.000, 4.900]"), "{output:#?}");
     output.expect(65);
 }
 
