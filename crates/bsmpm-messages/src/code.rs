@@ -1,7 +1,7 @@
-//! A message is a text that begins with its code: `W0112: boundary ...`.
+//! A message is a text that begins with its code: `W0206: gravity ...`.
 
 /// Characters of a code and of the colon and the blank behind it.
-const LENGTH: usize = "E0000".len();
+const LENGTH: usize = "E0001".len();
 
 /// What a message reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ pub fn without_code(message: &str) -> &str {
     }
 }
 
-/// A message as it is printed: `warning W0112: boundary ...`. `otherwise` is the word of one that has no code.
+/// A message as it is printed: `warning W0206: gravity ...`. `otherwise` is the word of one that has no code.
 pub fn headed(message: &str, otherwise: &str) -> String {
     match code_of(message).and_then(Kind::of) {
         Some(kind) => format!("{} {message}", kind.word()),
@@ -71,21 +71,21 @@ mod tests {
 
     #[test]
     fn a_code_is_a_letter_and_four_digits_before_a_colon() {
-        assert_eq!(code_of("W0112: boundary"), Some("W0112"));
-        for other in ["", "W0112", "W0112 boundary", "X0112: boundary", "W01a2: boundary", "äöü: boundary"] {
+        assert_eq!(code_of("W0206: gravity"), Some("W0206"));
+        for other in ["", "W0206", "W0206 gravity", "X0112: gravity", "W01a2: gravity", "äöü: gravity"] {
             assert_eq!(code_of(other), None, "{other}");
             assert_eq!(without_code(other), other);
         }
-        assert_eq!(without_code("W0112: boundary"), "boundary");
-        assert_eq!(with_context("W0112: boundary", "left"), "W0112: left: boundary");
-        assert_eq!(with_context("boundary", "left"), "left: boundary");
+        assert_eq!(without_code("W0206: gravity"), "gravity");
+        assert_eq!(with_context("W0206: gravity", "stage"), "W0206: stage: gravity");
+        assert_eq!(with_context("gravity", "stage"), "stage: gravity");
     }
 
     #[test]
     fn a_printed_message_begins_with_its_kind_and_its_code() {
-        assert_eq!(headed("W0112: boundary", "warning"), "warning W0112: boundary");
-        assert_eq!(headed("E0231: boundary", "error"), "error E0231: boundary");
+        assert_eq!(headed("W0206: gravity", "warning"), "warning W0206: gravity");
+        assert_eq!(headed("E0206: gravity", "error"), "error E0206: gravity");
         assert_eq!(headed("I0007: energy", "warning"), "warning I0007: energy");
-        assert_eq!(headed("boundary", "warning"), "warning: boundary");
+        assert_eq!(headed("gravity", "warning"), "warning: gravity");
     }
 }

@@ -29,7 +29,7 @@ const TEXTS: &str = include_str!("texts.txt");
 /// What explains one code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Page {
-    /// The code, such as `W0112`.
+    /// The code, such as `W0206`.
     pub code: &'static str,
     /// The cause in a few words.
     pub title: &'static str,

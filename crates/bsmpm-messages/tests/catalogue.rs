@@ -13,6 +13,8 @@ const LONGEST: usize = 200;
 const PLACEHOLDER: usize = 8;
 /// Characters below which a text is no sentence: its words must stand behind the code, not in a variable.
 const SHORTEST: usize = 20;
+/// Codes of texts that end with a placeholder for a full stop or for `; did you mean ...?`.
+const ENDED_BY_A_HINT: [&str; 3] = ["E0017", "E0020", "E0518"];
 
 fn crates() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a crate lies in the workspace").to_owned()
@@ -80,6 +82,39 @@ fn number_of_characters(text: &str) -> usize {
     without_code(text).chars().map(of).sum()
 }
 
+/// Whether a text ends with a full stop, a question mark, or a placeholder that is a sentence, a list or a command.
+fn is_ended(text: &str) -> bool {
+    let without_last = text.strip_suffix('…').map(|rest| rest.trim_end_matches(['…', ' ']));
+    let is_ended_before = without_last.is_some_and(|rest| rest.ends_with(['.', '?', ':']));
+    let has_hint = text.ends_with('…') && ENDED_BY_A_HINT.iter().any(|code| text.starts_with(code));
+    text.ends_with(['.', '?']) || is_ended_before || has_hint
+}
+
+/// Whether a number has no digit before its decimal point.
+fn has_bare_point(text: &str) -> bool {
+    text.match_indices('.').any(|(at, _)| {
+        let is_of_name = |before: char| before.is_alphanumeric() || "…._)]".contains(before);
+        text[at + 1..].starts_with(|after: char| after.is_ascii_digit()) && !text[..at].ends_with(is_of_name)
+    })
+}
+
+/// Every code that a text names.
+fn codes_in(text: &str) -> impl Iterator<Item = &str> {
+    let is_code = |word: &&str| word.len() == 5 && Kind::of(word).is_some() && word[1..].parse::<u16>().is_ok();
+    text.split(|character: char| !character.is_ascii_alphanumeric()).filter(is_code)
+}
+
+/// The codes of a row of `retired.txt`: those from the first to the last that it names.
+fn codes_without_message(row: &str) -> Vec<String> {
+    let named: Vec<&str> = codes_in(row.split(' ').next().unwrap_or_default()).collect();
+    let (Some(first), Some(last)) = (named.first(), named.last()) else { panic!("no code at the beginning of {row}") };
+    (number_of(first)..=number_of(last)).map(|number| format!("{}{number:04}", &first[..1])).collect()
+}
+
+fn number_of(code: &str) -> u16 {
+    code[1..].parse().expect("a code has four digits")
+}
+
 #[test]
 fn the_list_of_texts_is_that_of_the_sources() {
     let texts: String = texts_in_sources().iter().map(|text| format!("{text}\n")).collect();
@@ -101,19 +136,30 @@ fn each_text_is_short_and_says_what_is_wrong_in_sentences() {
         let words = without_code(&text);
         let characters = number_of_characters(&text);
         let letters = words.chars().filter(|character| character.is_alphabetic()).count();
-        let is_ended = words.ends_with(['.', '?', '…', ')', '`']);
-        let has_bare_point = words.split_whitespace().any(|word| word.starts_with('.') && word.len() > 1);
         if characters > LONGEST {
             faults.push(format!("{characters} characters: {text}"));
         }
         if letters < SHORTEST {
             faults.push(format!("no words: {text}"));
         }
-        if !is_ended || has_bare_point {
+        if !is_ended(&text) || has_bare_point(words) {
             faults.push(format!("no sentence, or a number without a leading zero: {text}"));
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn texts_without_an_end_and_numbers_without_a_leading_zero_are_found() {
+    for text in ["E0001: no `key`", "E0001: no key (of two)", "E0001: no …", "E0001: Use …"] {
+        assert!(!is_ended(text), "{text}");
+    }
+    for text in ["E0001: no key.", "E0001: no key. …", "E0001: failed: …", "E0001: no keys:  …", "E0017: found ……"]
+    {
+        assert!(is_ended(text), "{text}");
+    }
+    assert!(["is .5", "(.5)", "-.5", "k=.5"].iter().all(|text| has_bare_point(text)));
+    assert!(!["0.5", "body.0", "stage.….0", "body.….1", "1...2"].iter().any(|text| has_bare_point(text)));
 }
 
 #[test]
@@ -127,8 +173,36 @@ fn each_code_has_one_page_and_each_page_a_text() {
     let without_text: Vec<_> = once.difference(&used).collect();
     assert!(without_page.is_empty(), "codes without a page: {without_page:?}");
     assert!(without_text.is_empty(), "pages without a text in the sources: {without_text:?}");
-    let retired: BTreeSet<&str> = include_str!("../src/retired.txt").lines().collect();
-    assert_eq!(retired.intersection(&used).count(), 0, "a retired code is used again");
+}
+
+#[test]
+fn each_number_of_an_area_is_used_or_listed_as_retired_or_reserved() {
+    let rows = include_str!("../src/retired.txt").lines().filter(|row| !row.starts_with('#'));
+    let listed: BTreeSet<String> = rows.flat_map(codes_without_message).collect();
+    let used: BTreeSet<String> = pages().iter().map(|page| page.code.to_owned()).collect();
+    let used_again: Vec<_> = listed.intersection(&used).collect();
+    assert!(used_again.is_empty(), "retired or reserved codes are used: {used_again:?}");
+    let mut last = BTreeMap::new();
+    for code in &used | &listed {
+        let area = code[..3].to_owned();
+        let number = number_of(&code);
+        let previous = last.insert(area, number);
+        assert!(previous.is_none_or(|previous| previous + 1 == number), "the number before {code} is not listed");
+    }
+}
+
+#[test]
+fn codes_in_readmes_and_in_this_crate_have_pages() {
+    let explained: BTreeSet<&str> = pages().iter().map(|page| page.code).collect();
+    let mut files = vec![crates().with_file_name("README.md")];
+    rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
+    let of_crates = fs::read_dir(crates()).expect("crates can be listed");
+    files.extend(of_crates.map(|of_crate| of_crate.expect("crates can be listed").path().join("README.md")));
+    for file in files.iter().filter(|file| file.exists()) {
+        let text = fs::read_to_string(file).expect("readmes and sources can be read");
+        let unknown: Vec<_> = codes_in(&text).filter(|code| !explained.contains(code)).collect();
+        assert!(unknown.is_empty(), "{} names {unknown:?}, which have no page", file.display());
+    }
 }
 
 #[test]
