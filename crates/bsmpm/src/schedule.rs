@@ -169,7 +169,7 @@ mod tests {
         assert!(found.contains(&100.0) && found.last() == Some(&1000.0));
         let longest = std::iter::once(&0.0).chain(&found).zip(&found).map(|(from, to)| to - from).fold(0.0, f64::max);
         assert!((found[0] - 1.0).abs() < 0.1 && found[0] <= 1.0 + 1e-9 && longest <= 50.0 + 1e-9, "{found:?}");
-        // 100 = (1.2^16.7 - 1)/.2: 17 steps; the bound of 50 is reached at 245, after 21.5 from the start.
+        // 100 = (1.2^16.7 - 1)/0.2: 17 steps; the bound of 50 is reached at 245, after 21.5 from the start.
         assert_eq!(found.iter().position(|&t| t == 100.0), Some(16));
         assert!(ratios(&found)[..15].iter().all(|ratio| *ratio > 1.15 && *ratio < 1.2 + 1e-9), "{:?}", ratios(&found));
         assert_eq!(found.len(), 17 + 20);

@@ -101,7 +101,7 @@ fn the_same_column_in_three_dimensions_has_the_same_error() {
 
 #[test]
 fn large_strain_stress_stalls_with_linear_splines_ten_times_above_quadratic_ones() {
-    // method.md 9: shortened by 24 %, q = 1 stalls at 6-12 %, q = 2 has 0.26-.53 % left (point quadrature).
+    // method.md 9: shortened by 24 %, q = 1 stalls at 6-12 %, q = 2 has 0.26-0.53 % left (point quadrature).
     let error = |q, cells| {
         let (scene, _) = column::<PlaneStrain, 2>(q, cells, 0.8, 20).solved(1.0, 20.0);
         let [mean, square] = scene.stress_error(0.8);
