@@ -72,9 +72,10 @@ pub enum Error {
     },
     /// The operating system refused to read or write a file.
     #[error(
-        "E0764: the system cannot {action} `{}` ({source}). The program stops. Check the path, its permissions and \
-         the disk.",
-        path.display()
+        "E0764: the system cannot {action} `{}` ({}). The program stops. {}.",
+        path.display(),
+        cause(source),
+        against(source)
     )]
     File {
         /// What was tried: `read`, `write`, ...
@@ -124,9 +125,10 @@ pub enum Error {
     },
     /// The output directory cannot be made, opened or written to.
     #[error(
-        "E0767: the system cannot {action} the output directory `{}` ({source}). Nothing was run. Choose another \
-         directory with `-o`.",
-        path.display()
+        "E0767: the system cannot {action} the output directory `{}` ({}). Nothing was run. Choose another directory \
+         with `-o`.",
+        path.display(),
+        cause(source)
     )]
     Directory {
         /// What was tried.
@@ -219,5 +221,25 @@ impl Error {
 
     pub(crate) fn format(path: &Path, reason: impl Into<String>) -> Self {
         Self::Format { path: path.to_owned(), reason: reason.into() }
+    }
+}
+
+/// What the operating system said, in words.
+fn cause(source: &io::Error) -> String {
+    match source.kind() {
+        io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        io::ErrorKind::NotADirectory => "a part of the path is a file, not a directory".to_owned(),
+        _ => {
+            let text = source.to_string();
+            text.split(" (os error").next().unwrap_or(&text).to_owned()
+        }
+    }
+}
+
+/// What helps against an error of the operating system.
+fn against(source: &io::Error) -> &'static str {
+    match source.kind() {
+        io::ErrorKind::StorageFull => "Free space on the disk, and continue with `--restart auto`",
+        _ => "Check the path, its permissions and the disk",
     }
 }

@@ -150,9 +150,9 @@ impl IndicatorState {
         // JSON has no other numbers.
         all.retain(|(_, indicator)| indicator.value.is_finite());
         let judged = |(name, indicator): (&str, Indicator)| {
-            let [code, meaning, advice] = report::parts(&text::of(name, case, indicator.value), &indicator.meaning);
+            let (text, which) = (text::of(name, case, indicator.value), indicator.meaning.clone());
             let limited = indicator.limited(limits::of(name, case), limits::are_accepted(name, case));
-            (name.to_owned(), Indicator { code, meaning, advice, ..limited })
+            (name.to_owned(), report::worded(name, &text, &which, limited))
         };
         all.into_iter().map(judged).collect()
     }
@@ -211,8 +211,11 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
     });
     let [background, load_share] = of_background(case, summary);
     let loss = summary.largest_stiffness_loss.map(|loss| {
-        let failed = summary.failed_at.map(|t| format!(", which failed at t = {},", short(t)));
-        ("stiffness-loss", Indicator::new(loss, "-", &failed.unwrap_or_default(), [0.0, STIFFNESS_LOSS]))
+        let state = match summary.failed_at {
+            Some(t) => format!("the ground failed at t = {}", short(t)),
+            None => "the ground has not failed".to_owned(),
+        };
+        ("stiffness-loss", Indicator::new(loss, "-", &state, [0.0, STIFFNESS_LOSS]))
     });
     let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic);

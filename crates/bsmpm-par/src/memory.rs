@@ -41,14 +41,14 @@ enum Limit {
 impl Display for Shortage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (needed, allowed) = (self.needed as f64 / GIB, self.allowed as f64 / GIB);
-        write!(f, "about {needed:.3} GiB ")?;
+        write!(f, "about {needed:.1} GiB ")?;
         let ranks = self.ranks;
         match self.by {
-            Limit::Asked => write!(f, "on {ranks} rank(s), and --max-memory allows {allowed:.3} GiB"),
-            Limit::Process => write!(f, "on each of {ranks} rank(s), and `ulimit` allows {allowed:.3} GiB"),
-            Limit::Free => write!(f, "for the {ranks} rank(s) of this host, where {allowed:.3} GiB are available"),
+            Limit::Asked => write!(f, "on {ranks} rank(s), and --max-memory allows {allowed:.1} GiB"),
+            Limit::Process => write!(f, "on each of {ranks} rank(s), and `ulimit` allows {allowed:.1} GiB"),
+            Limit::Free => write!(f, "on this computer ({ranks} rank(s)), where {allowed:.1} GiB are available"),
             Limit::Group => {
-                write!(f, "for the {ranks} rank(s) of this host, whose control group allows {allowed:.3} GiB")
+                write!(f, "on this computer ({ranks} rank(s)), whose control group allows {allowed:.1} GiB")
             }
         }
     }
@@ -59,12 +59,12 @@ impl Shortage {
     fn refusal(&self) -> String {
         match self.by {
             Limit::Asked => format!(
-                "E0702: the case needs too much memory: {self}. Nothing was run. Use larger cells or fewer points, or \
-                 increase this limit."
+                "E0702: the case needs too much memory: {self}. Nothing was run. Increase `grid.cell`, or reduce \
+                 `body.points_per_cell`, or increase this limit."
             ),
             Limit::Free | Limit::Group | Limit::Process => format!(
-                "E0702: the case needs too much memory: {self}. Nothing was run. Use larger cells, fewer points or \
-                 more hosts, or set `--max-memory`."
+                "E0702: the case needs too much memory: {self}. Nothing was run. Increase `grid.cell`, reduce \
+                 `body.points_per_cell`, or use more computers."
             ),
         }
     }
@@ -85,15 +85,15 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
         if let (None, Some(shortage)) = (shortage(estimate.bytes), shortage(estimate.bytes_with_newton)) {
             let text = format!(
                 "W0723: Newton's method, which difficult steps use, needs too much memory: {shortage}. The system may \
-                 then end the run. Use larger cells, or more hosts."
+                 then end the run. Increase `grid.cell`, or use more computers."
             );
             say(&headed(&text, "warning"));
         }
         match shortage(estimate.bytes) {
             Some(shortage) if arguments.check && shortage.by != Limit::Asked => {
                 let text = format!(
-                    "W0724: the case needs too much memory: {shortage}. The case cannot be run on this host. Use \
-                     larger cells, fewer points, or more hosts."
+                    "W0724: the case needs too much memory: {shortage}. This computer cannot run it. Increase `grid.cell`, \
+                     reduce `body.points_per_cell`, or use more computers."
                 );
                 say(&headed(&text, "warning"));
             }
@@ -207,9 +207,6 @@ mod tests {
         assert!(is_short((Limit::Free, 1 << 30)) && !is_short((Limit::Group, 2 << 30)));
         assert!(is_short((Limit::Process, 1 << 29)) && !is_short((Limit::Process, 1 << 30)));
         let said = short(4 << 30, ranks, (Limit::Free, 1 << 30)).unwrap().to_string();
-        assert!(
-            said.contains("about 2.000 GiB for the 2 rank(s) of this host, where 1.000 GiB are available"),
-            "{said}"
-        );
+        assert!(said.contains("about 2.0 GiB on this computer (2 rank(s)), where 1.0 GiB are available"), "{said}");
     }
 }

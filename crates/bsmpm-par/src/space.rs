@@ -47,7 +47,7 @@ pub fn admit<K: Kinematics<D>, const D: usize>(
     let warning = |room| {
         format!(
             "W0722: the disk may have too little space: {room}. The run may stop early. Free space on the disk, \
-            or write fewer frames."
+             or write fewer frames (a larger `output.every`)."
         )
     };
     let outcome = match shortage {

@@ -12,7 +12,7 @@ pub struct Indicator {
     pub value: f64,
     /// Its unit; `-` for none.
     pub unit: String,
-    /// What it says.
+    /// What was measured, with the value and its usual range or limit.
     pub meaning: String,
     /// Least and largest value that is usual.
     pub usual: [f64; 2],
@@ -28,7 +28,7 @@ pub struct Indicator {
     /// Whether the case accepts that.
     #[serde(default)]
     pub accepted: bool,
-    /// What a value outside means, and what to do then.
+    /// What a value outside the range means, and what to do then.
     #[serde(default)]
     pub advice: String,
 }
@@ -61,18 +61,6 @@ impl Indicator {
     /// Whether it ends the run with a code of its own.
     pub fn ends_run(&self) -> bool {
         self.failed && !self.accepted
-    }
-
-    /// The same with its code.
-    #[must_use]
-    pub fn coded(self, code: &str) -> Self {
-        Self { code: code.to_owned(), ..self }
-    }
-
-    /// The same with what to do where it is unusual.
-    #[must_use]
-    pub fn advising(self, advice: &str) -> Self {
-        Self { advice: advice.to_owned(), ..self }
     }
 
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {

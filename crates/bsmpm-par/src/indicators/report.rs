@@ -36,11 +36,19 @@ fn form(name: &str) -> Form {
     FORMS.iter().find(|(known, _)| *known == name).map_or(Form::Percent, |&(_, form)| form)
 }
 
-/// The text of an indicator, taken apart: its code, what it measures, and what to do. `which` is the one that is meant.
-pub(super) fn parts(text: &str, which: &str) -> [String; 3] {
+/// The indicator with its code, what was measured, and what to do, from a text with places for the value, its range and
+/// `which`, the one that is meant.
+pub(super) fn worded(name: &str, text: &str, which: &str, found: Indicator) -> Indicator {
     let code = code_of(text).unwrap_or_default().to_owned();
-    let (measure, advice) = without_code(text).split_once(" is {value} ({range}). ").unwrap_or_default();
-    [code, measure.replace("{which}", which), advice.to_owned()]
+    let text = without_code(text);
+    // The range stands in the first sentence.
+    let end = text.find("{range}").and_then(|range| Some(range + text[range..].find(". ")?));
+    let (measure, advice) = end.map_or((text, ""), |end| (&text[..end], &text[end + 2..]));
+    let form = form(name);
+    let measure = measure.replace("{which}", which).replace("{value}", &form.of(found.value));
+    let meaning = measure.replace("{range}", &form.range_of(&found));
+    let advice = advice.to_owned();
+    Indicator { code, meaning, advice, ..found }
 }
 
 /// All of them in a line.
@@ -50,14 +58,8 @@ pub fn line(indicators: &BTreeMap<String, Indicator>) -> String {
 }
 
 /// What is to be said of an indicator that is outside its usual range, its code first.
-pub fn description(name: &str, found: &Indicator) -> String {
-    let form = form(name);
-    let range = match found.limits.filter(|_| found.failed) {
-        Some(limits) if found.accepted => format!("limit: {}, accepted by output.accept", form.range(limits)),
-        Some(limits) => format!("limit: {}", form.range(limits)),
-        None => format!("usual: {}", form.range(found.usual)),
-    };
-    format!("{}: {} is {} ({range}). {}", found.code, found.meaning, form.of(found.value), found.advice)
+pub fn description(found: &Indicator) -> String {
+    format!("{}: {}. {}", found.code, found.meaning, found.advice)
 }
 
 /// What is to be said of the indicators that end a run, by their names.
@@ -78,6 +80,15 @@ impl Form {
             Self::Cells => format!("{} cells", brief(value)),
             Self::Metres => format!("{} m", brief(value)),
             Self::Times => format!("{value:.2} times the tolerance"),
+        }
+    }
+
+    /// The range that an indicator is outside of, or would be.
+    fn range_of(self, found: &Indicator) -> String {
+        match found.limits.filter(|_| found.failed) {
+            Some(limits) if found.accepted => format!("limit: {}, accepted by output.accept", self.range(limits)),
+            Some(limits) => format!("limit: {}", self.range(limits)),
+            None => format!("usual: {}", self.range(found.usual)),
         }
     }
 
@@ -106,23 +117,24 @@ fn brief(number: f64) -> String {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_text_is_taken_apart() {
-        let text = "I0024: number of cells across {which} is {value} ({range}). The stress is off. Refine the grid.";
-        let expected = ["I0024", "number of cells across `body.0`", "The stress is off. Refine the grid."];
-        assert_eq!(parts(text, "`body.0`"), expected);
+    fn described(name: &str, text: &str, found: Indicator) -> String {
+        description(&worded(name, text, "`body.0`", found))
     }
 
     #[test]
     fn values_and_ranges_are_read_with_their_units() {
-        let row = |value, usual| Indicator::new(value, "-", "numerical dissipation relative to the peak energy", usual);
-        let text =
-            description("energy-loss", &row(0.1234, [-0.1, 0.1]).coded("I0012").advising("Reduce `analysis.dt`."));
-        let expected = "I0012: numerical dissipation relative to the peak energy is 12 % (usual: -10 to 10 %). Reduce \
-                        `analysis.dt`.";
-        assert_eq!(text, expected);
+        let row = |value, usual| Indicator::new(value, "-", "", usual);
+        let text = "I0012: dissipation is {value} of the peak ({range}), so the motion is damped. Reduce `dt`. Or not.";
+        assert_eq!(
+            described("energy-loss", text, row(0.1234, [-0.1, 0.1])),
+            "I0012: dissipation is 12 % of the peak (usual: -10 to 10 %), so the motion is damped. Reduce `dt`. Or not."
+        );
         let failed = row(0.8, [0.0, 0.02]).limited(Some([0.0, 0.1]), false);
-        assert!(description("force-noise", &failed).contains("is 80 % (limit: below 10 %)"));
+        let text = "I0025: {which} scatters by {value} ({range}). Average it.";
+        assert_eq!(
+            described("force-noise", text, failed),
+            "I0025: `body.0` scatters by 80 % (limit: below 10 %). Average it."
+        );
         assert_eq!(Form::Number.range([10.0, 1e6]), "at least 10");
         assert_eq!(Form::Percent.of(1.2e-7), "1.2e-5 %");
         assert_eq!(Form::Times.of(1.5) + " " + &Form::Times.range([0.0, 1.0]), "1.50 times the tolerance at most 1");

@@ -21,21 +21,42 @@ pub(super) fn of(name: &str, case: &Case, value: f64) -> String {
         "pressure-noise-plane" => NOISE_ABOUT_PLANE.replace("{remedy}", noise()),
         "energy-growth" => GROWTH.replace("{remedy}", against_growth(case.stabilisation)),
         "wall-velocity" => WALL.replace("{remedy}", against_sliding(case)),
-        "energy-loss" if value < 0.0 => ENERGY_MADE.to_owned(),
+        "interface-shift" => INTERFACE.replace("{remedy}", against_shift(case, value)),
+        "energy-loss" if value < 0.0 && case.analysis.regime == Regime::Dynamic => ENERGY_MADE.to_owned(),
         _ => constant(name, case).to_owned(),
     }
 }
 
-const NOISE_ABOUT_AVERAGE: &str = "I0001: pressure scatter of the material points about their local mean is {value} \
-    ({range}). Stresses at single points are unreliable. {remedy}";
-const NOISE_ABOUT_PLANE: &str = "I0002: pressure scatter of the material points about a local linear fit is {value} \
-    ({range}). Stresses at single points are unreliable. {remedy}";
-const ENERGY_MADE: &str = "I0012: numerical dissipation, relative to the peak energy, is {value} ({range}). The algorithm \
-                           adds energy to the motion. Reduce `analysis.dt`.";
-const GROWTH: &str = "I0013: energy created by the algorithm, relative to the peak energy, is {value} ({range}). The \
-                      computed motion is too fast. {remedy}";
-const WALL: &str = "I0019: excess kinetic energy of soil next to fixed boundaries, relative to the total, is {value} \
-                    ({range}). The soil slides too far along these boundaries. {remedy}";
+const NOISE_ABOUT_AVERAGE: &str = "I0001: the pressures of neighbouring material points scatter by {value} of \
+    their mean ({range}). \
+    Do not use stresses of single points. {remedy}";
+const NOISE_ABOUT_PLANE: &str = "I0002: the pressures of neighbouring material points scatter by {value} of their \
+    mean about a linear \
+    trend ({range}). Do not use stresses of single points. {remedy}";
+const ENERGY_MADE: &str = "I0012: numerical dissipation is {value} of the peak energy ({range}). The algorithm \
+    adds energy to the motion. Reduce `analysis.dt`.";
+const GROWTH: &str = "I0013: the algorithm has created {value} of the peak energy ({range}). The computed motion is \
+    too fast. {remedy}";
+const WALL: &str = "I0019: soil next to fixed boundaries has an excess of {value} of the kinetic energy \
+    ({range}). It moves too fast and slides too far there. {remedy}";
+const INTERFACE: &str = "I0021: a material interface has moved {value} from its grid line ({range}). Stresses \
+    within three cells \
+    of it are wrong. {remedy}";
+
+/// Cells  Distance of an interface from its grid line from which on no reasonable cell is large enough.
+const FAR: f64 = 1.0;
+
+/// What keeps an interface in its cell.
+fn against_shift(case: &Case, value: f64) -> &'static str {
+    match (may_fit(case), value < FAR) {
+        (true, true) => {
+            "Set `solver.quadrature = \"fitted\"`, or use larger cells, so that it stays within half a cell."
+        }
+        (true, false) => "Set `solver.quadrature = \"fitted\"`, or do not use these stresses.",
+        (false, true) => "Use larger cells, so that it stays within half a cell.",
+        (false, false) => "Do not use these stresses. Smaller cells do not help.",
+    }
+}
 
 /// What makes material next to a fixed boundary stick to it.
 fn against_sliding(case: &Case) -> &'static str {
@@ -59,7 +80,8 @@ fn against_noise(case: &Case) -> &'static str {
             "Set `stabilisation.method = \"consistent-f-bar\"`."
         }
         Stabilisation::ConsistentFBar if is_rubbery && is_static && case.geometry != Geometry::Solid => {
-            "State the material as undrained soil (`drainage = \"undrained\"`), or set `stabilisation.method = \"subgrid-f-bar\"`."
+            "State the material as undrained soil (`drainage = \"undrained\"`), or set `stabilisation.method = \
+             \"subgrid-f-bar\"`."
         }
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar if is_rubbery && is_static => {
             "State the material as undrained soil (`drainage = \"undrained\"`)."
@@ -102,116 +124,131 @@ fn constant(name: &str, case: &Case) -> &'static str {
     let is_dynamic = case.analysis.regime == Regime::Dynamic;
     match name {
         "quadrature-defect" => {
-            "I0003: RMS difference between the volumes of full cells and of the material points in them is {value} \
-             ({range}). Stresses are wrong by a similar amount. Increase `body.points_per_cell`."
+            "I0003: the volume of the material points in full cells differs from that of the cell by {value} on \
+             average ({range}). \
+             Stresses are wrong by about as much. Increase `body.points_per_cell`."
         }
         "quadrature-defect-largest" => {
-            "I0004: largest difference between the volumes of a full cell and of the material points in it is {value} \
-             ({range}). Stresses there are wrong by a similar amount. Increase `body.points_per_cell`."
+            "I0004: in a full cell the volume of the material points differs by {value} from that of the cell \
+             ({range}). Its stress \
+             is wrong by about as much. Increase `body.points_per_cell`."
         }
         "points-per-cell" => {
-            "I0005: mean number of material points in filled cells is {value} ({range}). The integration is too coarse, and stresses \
+            "I0005: full cells have {value} material points on average ({range}). The integration is too coarse, \
+             and stresses \
              oscillate. Increase `body.points_per_cell`."
         }
         "compression" if may_fit(case) => {
-            "I0006: volume reduction of the most compressed material is {value} ({range}). With few points per cell its \
+            "I0006: the most compressed soil has lost {value} of its volume ({range}). With few points per cell its \
              stress is wrong by up to 1 %. Set `solver.quadrature = \"fitted\"`, or `body.points_per_cell = 4`."
         }
         "compression" => {
-            "I0006: volume reduction of the most compressed material is {value} ({range}). With few points per cell its \
+            "I0006: the most compressed soil has lost {value} of its volume ({range}). With few points per cell its \
              stress is wrong by up to 1 %. Set `body.points_per_cell = 4`."
         }
         "force-measure" => {
-            "I0007: largest force residual of an accepted step is {value} ({range}). The program accepted a step that \
-             had not converged, which is a defect of the program. Report this message."
+            "I0007: the program accepted a step with a force residual of {value} ({range}). This is a defect of \
+             the program. \
+             Report this message."
         }
         "energy-measure" => {
-            "I0008: largest energy residual of an accepted step is {value} ({range}). The program accepted a step \
-             that had not converged, which is a defect of the program. Report this message."
+            "I0008: the program accepted a step with an energy residual of {value} ({range}). This is a defect of \
+             the program. \
+             Report this message."
         }
         "water-measure" => {
-            "I0009: largest water residual of an accepted step is {value} ({range}). The program accepted a step that \
-             had not converged, which is a defect of the program. Report this message."
+            "I0009: the program accepted a step with a water residual of {value} ({range}). This is a defect of \
+             the program. \
+             Report this message."
         }
         "water-balance" => {
-            "I0010: error of the water balance, relative to the water that moved, is {value} ({range}). Water was created or lost. \
+            "I0010: the water balance has an error of {value} of the water that moved ({range}). Water was \
+             created or lost. \
              Reduce `solver.force_tolerance`."
         }
         "energy-closure" => {
-            "I0011: error of the energy balance, relative to the peak energy, is {value} ({range}). The steps are not converged \
-             well enough. Reduce `solver.tolerance`."
+            "I0011: the energy balance has an error of {value} of the peak energy ({range}). The steps are not \
+             converged well enough. Reduce `solver.tolerance`."
+        }
+        "energy-loss" if !is_dynamic => {
+            "I0012: energy lost between the steps is {value} of the peak energy ({range}). The steps are too long. \
+             Increase `analysis.steps`."
         }
         "energy-loss" => {
-            "I0012: numerical dissipation, relative to the peak energy, is {value} ({range}). The motion is damped too strongly. \
+            "I0012: numerical dissipation is {value} of the peak energy ({range}). The motion is damped too strongly. \
              Reduce `analysis.dt`."
         }
         "smoothing-length" => {
-            "I0014: length over which strains were smoothed is {value} ({range}). Details of the stress that are \
-             smaller are lost. Use smaller cells, or another `stabilisation.method`."
+            "I0014: strains were smoothed over a length of {value} ({range}). Smaller details of the stress are \
+             lost. Use \
+             smaller cells, or set `stabilisation.method = \"consistent-f-bar\"`."
         }
         "slip" => {
-            "I0015: largest slip of soil along a rigid footing or segment, relative to its motion, is {value} \
-             ({range}). The computed force is too small. Increase `analysis.steps`, or use smaller cells there."
+            "I0015: soil slips along a rigid footing or segment by {value} of its motion ({range}). The computed \
+             force is too \
+             small. Increase `analysis.steps`, or use smaller cells there."
         }
         "support-pull" => {
-            "I0016: largest tension at a boundary, relative to the largest reaction, is {value} ({range}). Tension is \
-             correct at a plane of symmetry only. Set other sides to `\"contact\"` in `[boundary]`."
+            "I0016: a boundary carries a tension of {value} of the largest reaction ({range}). This is correct at \
+             a plane of \
+             symmetry only. Set other sides to `\"contact\"` in `[boundary]`."
         }
         "front-setback" => {
-            "I0017: largest backward movement of the front is {value} ({range}). The tip is thinner than half a cell, \
-             so the front is not the run-out distance. Use smaller cells, or `quantity = \"runout\"`."
+            "I0017: the front of the soil moved back by {value} ({range}). Its tip became thinner than half a \
+             cell, so it is not the run-out. Use smaller cells, or a history with `quantity = \"runout\"`."
         }
         "step-advance" => {
-            "I0018: largest displacement of a material point in one step is {value} ({range}). The positions of \
-             fronts and contacts are wrong by 5 to 10 %. Reduce `analysis.dt`."
+            "I0018: a material point moved by {value} in one step ({range}). The positions of fronts and contacts \
+             are wrong by 5 \
+             to 10 %. Reduce `analysis.dt`."
         }
         "rigid-penetration" if is_dynamic => {
-            "I0020: largest penetration of soil into a rigid body is {value} ({range}). The position of the contact \
-             is wrong by this distance. Reduce `analysis.dt`."
+            "I0020: soil penetrates a rigid body by {value} ({range}). The position of the contact is wrong by \
+             this distance. \
+             Reduce `analysis.dt`."
         }
         "rigid-penetration" => {
-            "I0020: largest penetration of soil into a rigid body is {value} ({range}). The position of the contact \
-             is wrong by this distance. Increase `analysis.steps`."
-        }
-        "interface-shift" if may_fit(case) => {
-            "I0021: distance of a material interface from the grid line where it began is {value} ({range}). Stresses \
-             within three cells are wrong. Set `solver.quadrature = \"fitted\"`, or use larger cells there."
-        }
-        "interface-shift" => {
-            "I0021: distance of a material interface from the grid line where it began is {value} ({range}). Stresses \
-             within three cells are wrong. Use larger cells there."
+            "I0020: soil penetrates a rigid body by {value} ({range}). The position of the contact is wrong by \
+             this distance. \
+             Increase `analysis.steps`."
         }
         "permeability-shift" => {
-            "I0022: distance of an interface of permeabilities from the grid line where it began is {value} \
-             ({range}). Flow there is wrong by up to a factor of 2. Use larger cells there."
+            "I0022: an interface of permeabilities has moved {value} from its grid line ({range}). Flow there is \
+             wrong by up to a \
+             factor of 2. Use larger cells, so that it stays within half a cell."
         }
         "cells-across-footing" => {
-            "I0023: number of cells across the footing is {value} ({range}). The failure load is more than 8 % too \
-             large. Use smaller cells at the footing, or extrapolate with `bsmpm limit-load`."
+            "I0023: the footing is {value} cells wide ({range}). The failure load is more than 8 % too large. Use \
+             smaller \
+             cells at the footing, or extrapolate with `bsmpm limit-load`."
         }
         "cells-across-opening" => {
-            "I0024: number of cells across the hole or notch {which} is {value} ({range}). The stress at its edge is \
-             wrong by more than 10 %. Refine `grid.knots` there."
+            "I0024: the hole or notch {which} is {value} cells wide ({range}). The stress at its edge is wrong by \
+             more than \
+             10 %. Refine `grid.knots` there."
         }
         "force-noise" => {
-            "I0025: scatter of the force {which} from step to step, relative to its peak, is {value} ({range}). \
-             Single values are uncertain. Use smaller cells there, or average the force over several steps."
+            "I0025: the force {which} scatters by {value} of its peak from step to step ({range}). Average it \
+             over several steps, \
+             or use smaller cells where it acts."
         }
         "background-load-share" if case.solver.extended_splines == ExtendedSplines::Off => {
-            "I0026: largest force of the artificial background stiffness, relative to the nodal forces, is {value} \
-             ({range}). Soil in nearly empty cells creeps from step to step. Remove `solver.extension`."
+            "I0026: the artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
+             The soil there drifts slowly. Remove `solver.extension`."
         }
         "background-load-share" => {
-            "I0026: largest force of the artificial background stiffness, relative to the nodal forces, is {value} \
-             ({range}). Soil in nearly empty cells creeps from step to step. Increase `body.points_per_cell`."
+            "I0026: the artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
+             The soil there drifts slowly. Increase `body.points_per_cell`."
         }
         "stiffness-loss" => {
-            "I0027: largest ratio of the elastic to the actual stiffness of the ground{which} is {value} ({range}). \
-             Displacements after failure are not reliable. Reduce the load, or use `bsmpm fos`."
+            "I0027: {which}: its elastic stiffness is {value} times the actual one ({range}). Displacements from \
+             then on are not \
+             reliable. Reduce the load, or use `bsmpm fos`."
         }
         "background-work" => {
-            "I0028: work of the artificial background stiffness, relative to the internal work, is {value} ({range}). \
-             Forces are too large by a similar amount. Reduce `solver.background`."
+            "I0028: the artificial stiffness of nearly empty cells takes {value} of the internal work ({range}). \
+             Forces are too \
+             large by about as much. Reduce `solver.background`."
         }
         _ => "",
     }

@@ -8,7 +8,7 @@ use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::failure::{FailureMeasures, FailureReport};
 use bsmpm_io::manifest::Worst;
-use bsmpm_messages::code_of;
+use bsmpm_messages::{code_of, without_code};
 use bsmpm_scene::{Body, Case, GridSpec, Initial, Rigid};
 use mpi::topology::{Communicator, SimpleCommunicator};
 use mpi::traits::CommunicatorCollectives;
@@ -171,8 +171,12 @@ fn starts_at_rest(case: &Case) -> bool {
 
 /// What the case was warned of as probably not meant: it may well be why a step fails.
 fn implausible(case: &Case) -> Vec<String> {
-    let is_slip = |warning: &&String| code_of(warning).is_some_and(|code| code.starts_with("W01"));
-    case.warnings.iter().filter(is_slip).map(|warning| format!("Check this warning first: {warning}")).collect()
+    let slips = case.warnings.iter().filter_map(|warning| {
+        let code = code_of(warning).filter(|code| code.starts_with("W01"))?;
+        let key = without_code(warning).split(": ").next().unwrap_or_default();
+        Some(format!("First check warning {code} ({key})."))
+    });
+    slips.collect()
 }
 
 /// What helps where soil without cohesion has a free surface that its weight alone brings to failure.

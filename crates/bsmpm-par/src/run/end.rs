@@ -52,8 +52,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             }
             warnings = limit_load::warnings(&ledger.manifest().limit_loads);
             for check in ledger.manifest().checks.iter().filter(|check| !check.passed) {
-                let number = |number: Option<f64>| number.map_or("-".to_owned(), |number| format!("{number}"));
-                let (value, least, most) = (number(check.value), number(check.min), number(check.max));
+                let [value, least, most] = [check.value, check.min, check.max].map(in_words);
                 let quantity = &check.quantity;
                 run.log.failure(&format!(
                     "E0730: the check of `{quantity}` failed: the value is {value} (allowed: {least} to {most}). The \
@@ -66,8 +65,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if let Some(ledger) = &mut run.ledger {
             let ending = ledger.manifest().indicators.iter().filter(|(_, found)| found.ends_run());
             let ending: Vec<_> = ending.collect();
-            for (name, found) in &ending {
-                run.log.failure(&indicators::description(name, found));
+            for (_, found) in &ending {
+                run.log.failure(&indicators::description(found));
             }
             if !ending.is_empty() {
                 failed[1] = 1.0;
@@ -188,4 +187,10 @@ fn communication(
         (kind.name().to_owned(), all)
     };
     TrafficKind::ALL.into_iter().zip(numbers).map(with).collect()
+}
+
+/// A number with seven digits, or a dash for none.
+fn in_words(number: Option<f64>) -> String {
+    let rounded = |number: f64| format!("{number:.6e}").parse().unwrap_or(number);
+    number.map_or_else(|| "-".to_owned(), |number| rounded(number).to_string())
 }

@@ -3,7 +3,6 @@
 
 use super::Run;
 use crate::launch;
-use crate::log::short;
 use bsmpm::energy::Stored;
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
@@ -70,7 +69,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             stage.resets_displacements.then(|| "displacements set to zero".to_owned()),
         ];
         let changes: Vec<String> = changes.into_iter().flatten().collect();
-        self.log.line("stage", &format!("Stage{name} at t = {}: {}.", short(time), changes.join(", ")));
+        self.log.line("stage", &format!("Stage{name} at t = {}: {}.", self.moment(time), changes.join(", ")));
         if let Some(ledger) = &mut self.ledger {
             let name = stage.name.clone();
             let reset = stage.resets_displacements;

@@ -1,7 +1,6 @@
 //! What a run reports and does before its first step.
 
 use super::Run;
-use crate::log::short;
 use crate::machine;
 use crate::setup::{self, Start};
 use bsmpm::error::StepError;
@@ -34,12 +33,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             );
         }
         for note in &self.case.notes {
-            self.log.detail("detail", &format!("{} = {}: {}", note.key, note.value, note.reason));
+            self.log.detail("detail", &format!("{} = {} ({})", note.key, note.value, note.reason));
         }
         if self.before.resumed {
             let (step, time) = (self.simulation.steps(), self.simulation.time());
-            self.log
-                .line("restart", &format!("Continuing from step {step} at t = {}{}.", short(time), self.time_unit()));
+            self.log.line("restart", &format!("Continuing from step {step} at t = {}.", self.moment(time)));
             return Ok(());
         }
         let mut report = StepReport::default();

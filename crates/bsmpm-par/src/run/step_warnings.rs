@@ -2,7 +2,6 @@
 
 use super::Run;
 use crate::checkpoint::Outlet;
-use crate::log::short;
 use bsmpm::control::Accepted;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::tensor::Vector;
@@ -38,7 +37,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// A rigid body that comes so fast that points are met too late, or so light a penalty that they go into it.
     pub(super) fn tell_rigid(&mut self, accepted: &Accepted) {
         for (number, report) in accepted.report.rigid.iter().enumerate() {
-            let (name, t) = (self.case.rigid[number].name.clone(), short(accepted.t));
+            let (name, t) = (self.case.rigid[number].name.clone(), self.moment(accepted.t));
             let (advance, depth) = (report.advance, report.penetration);
             if advance > FASTEST && self.warned_rigid.insert(2 * number) {
                 self.warn(format!(
@@ -79,7 +78,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let mut holding = faces.filter(|of| !matches!(of.support, Support::Free | Support::Outflow));
             let Some(through) = holding.find(|of| of.face.axis < D && further(of.face)) else { continue };
             let (name, side) = (self.case.rigid[number].name.clone(), through.face.side(self.case.geometry));
-            let t = short(accepted.t);
+            let t = self.moment(accepted.t);
             self.warned_rigid.insert(known);
             self.warn(format!(
                 "W0704: rigid body `{name}` passes through boundary `{side}` at t = {t}. Boundaries do not support rigid bodies. \
@@ -97,7 +96,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 continue;
             }
             let points = on.points.len();
-            let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), short(accepted.t));
+            let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), self.moment(accepted.t));
             let mut kind = number;
             let warning = if strip.held == 0 {
                 format!(
@@ -127,7 +126,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// A drain or an inflow most of which has no ground near lets nothing through there.
     pub(super) fn tell_drains(&mut self, accepted: &Accepted) {
-        let (Some(water), t) = (&accepted.report.water, short(accepted.t)) else { return };
+        let (Some(water), t) = (&accepted.report.water, self.moment(accepted.t)) else { return };
         let model = &self.simulation.model;
         let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
         let Some(flow) = flow.filter(|flow| flow.motion == Motion::Flows) else { return };
@@ -148,8 +147,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
             if self.warned_strips.insert(of_strips + points.len() + number) {
                 self.warn(format!(
-                    "W0709: the surface of `{name}` tore open by {:.1} cells at t = {t}. No water drains through the \
-                     new faces. To see the influence, run also with `drainage = \"hydrostatic\"`.",
+                    "W0709: the soil surface at `{name}` opened by {:.1} cells at t = {t}. The new faces do not drain. To see \
+                     how much this matters, compare a run without water flow (`drainage = \"hydrostatic\"`).",
                     water.torn[number]
                 ));
             }
@@ -159,7 +158,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// Ground that goes away from a drained face of the grid leaves its drain there. `known`: of the first.
     fn tell_drained_faces(&mut self, accepted: &Accepted, known: usize) {
-        let (Some(water), t) = (&accepted.report.water, short(accepted.t)) else { return };
+        let (Some(water), t) = (&accepted.report.water, self.moment(accepted.t)) else { return };
         let flow = self.simulation.model.water.as_ref().and_then(|water| water.flow.as_ref());
         let acts: Vec<bool> = flow.map_or_else(Vec::new, |flow| flow.faces.iter().map(|face| face.acts).collect());
         for (number, face) in water.faces.iter().enumerate().filter(|(number, _)| acts[*number]) {
@@ -196,7 +195,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     pub(super) fn tell_outflow(&mut self, accepted: &Accepted) {
         let Some(outflow) = &accepted.report.outflow else { return };
         if self.recorder.left().points == 0 {
-            let t = short(accepted.t);
+            let t = self.moment(accepted.t);
             let message = format!("Material leaves the grid from t = {t} on. Its amount is in run.json (`outflow`).");
             self.log.line("outflow", &message);
         }
@@ -207,7 +206,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             ledger.manifest().outflow = Some(ManifestOutflow { points, mass: mass * self.case.geometry.whole() });
         }
         for name in lost {
-            let t = short(accepted.t);
+            let t = self.moment(accepted.t);
             self.warn(format!(
                 "W0713: the material point of history `{name}` left the grid at t = {t}. The values of the history \
                  are 0 from then on. Use a larger grid, or follow another point."

@@ -34,6 +34,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if self.case.analysis.kind.is_timeless() { "" } else { " s" }
     }
 
+    /// A time with its unit.
+    pub(super) fn moment(&self, t: f64) -> String {
+        format!("{}{}", short(t), self.time_unit())
+    }
+
     /// Prints what was found, what was done, where the results are and what to do next.
     pub(super) fn summarise(&mut self, code: u8) {
         let Some(mut ledger) = self.ledger.take() else { return };
@@ -46,16 +51,16 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if !manifest.indicators.is_empty() {
             self.log.detail("indicators", &indicators::line(&manifest.indicators));
         }
-        let unusual = manifest.indicators.iter().filter(|(_, found)| found.unusual);
+        let unusual = manifest.indicators.values().filter(|found| found.unusual);
         // A complete run has named those that end it.
         let is_complete = [exit::DONE, exit::CHECK, exit::INDICATOR].contains(&code);
-        for (name, found) in unusual.clone().filter(|(_, found)| !(is_complete && found.ends_run())) {
-            self.log.warning("indicator", &indicators::description(name, found));
+        for found in unusual.clone().filter(|found| !(is_complete && found.ends_run())) {
+            self.log.warning("indicator", &indicators::description(found));
         }
         if manifest.summary.settled_steps > 0 {
             self.log.line("settled", &settled(&manifest.summary));
         }
-        let of_indicators = unusual.map(|(_, found)| Some(found.code.as_str()));
+        let of_indicators = unusual.map(|found| Some(found.code.as_str()));
         let of_warnings = manifest.warnings.iter().map(|warning| code_of(warning));
         let codes: Vec<Option<&str>> = of_warnings.chain(of_indicators).collect();
         self.log.line("end", &self.work(&manifest.summary, code));
@@ -88,7 +93,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             exit::STOPPED => "Stopped",
             _ => "Failed",
         };
-        let (t, unit, steps) = (short(self.simulation.time()), self.time_unit(), summary.steps);
+        let (t, steps) = (self.moment(self.simulation.time()), summary.steps);
+        if code == exit::STOPPED && steps == 0 {
+            return format!("Stopped before the first step was complete, after {}.", duration(self.wall()));
+        }
         let mean = summary.iterations as f64 / steps.max(1) as f64;
         let cuts = match summary.cutbacks {
             0 => String::new(),
@@ -96,7 +104,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             cuts => format!(", {cuts} rejected attempts"),
         };
         let elapsed = duration(self.wall());
-        format!("{how} at t = {t}{unit}: {steps} steps in {elapsed}, {mean:.1} iterations per step{cuts}.")
+        format!("{how} at t = {t}: {steps} steps in {elapsed}, {mean:.1} iterations per step{cuts}.")
     }
 
     /// Why the run stopped, and how to continue.
@@ -117,10 +125,8 @@ fn counted(codes: &[Option<&str>]) -> Option<String> {
     let first = codes.iter().flatten().next().unwrap_or(&"CODE");
     match codes.len() {
         0 => None,
-        1 => Some(format!("1 warning, listed above and in run.json. It is explained by `bsmpm explain {first}`.")),
-        all => {
-            Some(format!("{all} warnings, listed above and in run.json. They are explained by `bsmpm explain CODE`."))
-        }
+        1 => Some(format!("1 warning, listed in run.json. It is explained by `bsmpm explain {first}`.")),
+        all => Some(format!("{all} warnings, listed in run.json. They are explained by `bsmpm explain CODE`.")),
     }
 }
 

@@ -164,7 +164,7 @@ fn a_slope_that_has_failed_is_reported_with_the_time() {
             let failed_at = failed_at.expect("it has failed");
             assert!(found.unusual && found.value > 300.0 && within.contains(&failed_at), "{found:?}, {failed_at}");
             assert!(log.contains("warning I0027: ") && log.contains("`bsmpm fos`"), "{log}");
-            let reported = format!("which failed at t = {},", (failed_at * 1e6).round() / 1e6);
+            let reported = format!("the ground failed at t = {}:", (failed_at * 1e6).round() / 1e6);
             assert!(log.contains(&reported), "{log}");
         }
     }
@@ -190,7 +190,7 @@ fn failure_is_reported_alike_on_any_number_of_ranks_and_after_restarts() {
     // Broyden's method finds no equilibrium so far beyond failure.
     let linear = &[&WHOLE[..2], &["--set", ACCEPTING]].concat()[..];
     let whole = of(&scratch, 1, linear, 0)["stiffness-loss"].clone();
-    assert!(whole.unusual && whole.meaning.contains("which failed at t = 0.7,"), "{whole:?}");
+    assert!(whole.unusual && whole.meaning.contains("the ground failed at t = 0.7"), "{whole:?}");
     let parts = [&["case.toml", "-q", "-o", "parts.out", "--restart", "auto"][..], linear].concat();
     scratch.mpirun(2, &[&parts[..], &["--max-steps", "7"]].concat()).expect(75);
     scratch.mpirun(3, &parts).expect(0);

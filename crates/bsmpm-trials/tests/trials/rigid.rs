@@ -237,7 +237,7 @@ fn a_rigid_wall_that_is_pushed_into_sand_has_rankines_passive_thrust() {
     }
     let [found, _] = thrust(&pushed, 1, "rigid-force");
     let passive = 0.5 * 18.0e3 * 9.0 * 3.0;
-    // +.38 %: it has heaved.
+    // +0.38 %: it has heaved.
     assert!((found / passive - 1.0).abs() < 0.01, "{found} for {passive}");
 }
 

@@ -92,9 +92,9 @@ fn i20_what_does_not_fit_into_the_memory_of_the_host_is_refused_once_with_71() {
     };
     let output = run(&[]).expect(71);
     output.says_once("error E0702: the case needs too much memory: about ");
-    output.says_once(" GiB for the 2 rank(s) of this host, where ");
+    output.says_once(" GiB on this computer (2 rank(s)), where ");
     output.says_once("--max-memory");
-    run(&["--max-memory", "16GiB"]).expect(71).says_once("and --max-memory allows 16.000 GiB");
+    run(&["--max-memory", "16GiB"]).expect(71).says_once("and --max-memory allows 16.0 GiB");
     // It may be meant for another host.
     let output = run(&["--check"]).expect(0);
     output.says_once("warning W0724: the case needs too much memory: about ");

@@ -21,14 +21,19 @@ fn a_step_that_fails_repeats_the_warning_of_a_probable_slip() {
     for (part, by, warning) in slips {
         let output = Scratch::with_case(&changed(SLOPE, part, by)).direct(&["case.toml"]).expect(80);
         output.says_once(&format!("warning {warning}"));
-        output.says_once(&format!("Check this warning first: {warning}"));
+        let [code, key] = [0, 1].map(|part| warning.split(": ").nth(part).unwrap_or_default());
+        output.says_once(&format!("First check warning {code} ({key})."));
     }
 }
 
 #[test]
 fn a_slope_without_cohesion_that_fails_says_so() {
-    let output = Scratch::with_case(&changed(SLOPE, "\"10 kPa\"", "0.0")).direct(&["case.toml"]).expect(80);
-    output.says_once("material.soil has no cohesion");
+    let steep = changed(SLOPE, "\"10 kPa\"", "0.0");
+    let output = Scratch::with_case(&steep).direct(&["case.toml"]).expect(80);
+    output.says_once("warning W0111: body.0: the slope of 26.6 degrees is steeper than the friction angle");
+    output.says_once("First check warning W0111 (body.0).");
+    let toe = changed(&steep, "friction_angle = 20.0", "friction_angle = 26.5");
+    Scratch::with_case(&toe).direct(&["case.toml"]).expect(80).says_once("material.soil has no cohesion");
 }
 
 #[test]
