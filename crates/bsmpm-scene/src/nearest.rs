@@ -10,7 +10,8 @@ pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) 
     if length > LONGEST {
         return None;
     }
-    let allowed = (length / 3).clamp(1, 4);
+    // With one edit a word of two letters is any other.
+    let allowed = if length <= 2 { 0 } else { (length / 3).clamp(1, 4) };
     let rated = known.into_iter().map(|name| (strsim::osa_distance(&word, &folded(name)), name));
     rated.filter(|(distance, _)| *distance <= allowed).min_by_key(|(distance, _)| *distance).map(|(_, name)| name)
 }

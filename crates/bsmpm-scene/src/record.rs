@@ -141,7 +141,7 @@ impl Context {
                     });
                 }
                 (None, Presence::Required) => {
-                    let message = format!("E0014: this key is missing. Add it; its value is {}.", key.kind);
+                    let message = missing(key);
                     report.missing(origin, &record.path, &[key.name], message, filled_by(&[key.name]));
                     record.fields.push(RecordField::absent(key.name, origin, None));
                 }
@@ -264,6 +264,19 @@ fn exclusive<'a>(
         let message = format!("E0014: none of the keys {} is given. Add one of them.", group.keys.join(", "));
         report.missing(record.origin, &record.path, group.keys, message, filled_by(group.keys));
     }
+}
+
+/// What to add where a required key is missing.
+fn missing(key: &Key) -> String {
+    let (Kind::Tables(table) | Kind::Named(table)) = key.kind else {
+        return format!("E0014: this key is missing. Add it; its value is {}.", key.kind);
+    };
+    let required = table.keys.iter().filter(|key| matches!(key.presence, Presence::Required));
+    let groups = table.exclusive.iter().filter(|group| group.required);
+    let one_of =
+        |group: &Group| group.keys.iter().take(2).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or ");
+    let names: Vec<String> = required.map(|key| format!("`{}`", key.name)).chain(groups.map(one_of)).collect();
+    format!("E0052: the case has no table {}. Add one, with {}.", table.header, names.join(", "))
 }
 
 impl Record {

@@ -2,7 +2,7 @@
 //! document then gets what is meant, so that the rest of the case is read as if it were right, and nothing else is
 //! reported that only follows from the slip.
 
-use crate::document::{DocumentTable, Node, Value};
+use crate::document::{DocumentEntry, DocumentTable, Node, Value};
 use crate::key_path::join;
 use crate::nearest::nearest;
 use crate::report::{Report, shortened};
@@ -67,6 +67,7 @@ impl Mender<'_, '_> {
                 }
             }
             Kind::Named(table) => {
+                self.name_single_table(node, table, path);
                 let Value::Table(named) = &mut node.value else { return };
                 for entry in &mut named.entries {
                     let path = join(path, &entry.key);
@@ -103,6 +104,20 @@ impl Mender<'_, '_> {
         self.report.error(node.origin, path, message);
         let item = Node { origin: node.origin, value: Value::Table(std::mem::take(written)) };
         node.value = Value::List(vec![item]);
+    }
+
+    /// `[material]` for `[material.NAME]`: the table gets the name that is sought, or a name of its own.
+    fn name_single_table(&mut self, node: &mut Node, table: &Table, path: &str) {
+        let Value::Table(written) = &mut node.value else { return };
+        let is_key =
+            |entry: &DocumentEntry| !matches!(entry.node.value, Value::Table(_)) && table.key(&entry.key).is_some();
+        if written.entries.is_empty() || !written.entries.iter().all(is_key) {
+            return;
+        }
+        let message = format!("E0051: this table needs a name: {}. Add the name, such as [{path}.soil].", table.header);
+        self.report.error(node.origin, path, message);
+        let only = Node { origin: node.origin, value: Value::Table(std::mem::take(written)) };
+        written.entries.push(DocumentEntry { key: "soil".to_owned(), origin: node.origin, node: only });
     }
 
     /// `[[grid]]` for `[grid]`: the only table of the list is the one that is meant.

@@ -45,7 +45,7 @@ fn bounded(path: &Path) -> io::Result<Vec<u8>> {
         io::Error::new(error.kind(), format!("E0001: the file cannot be read: {error}. Check its path."))
     };
     if !std::fs::metadata(path).map_err(unread)?.is_file() {
-        let message = "E0001: the file cannot be read: it is a directory, pipe or device. Name a regular file.";
+        let message = "E0001: the file cannot be read: it is a directory, pipe or device. Give the name of a file.";
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
     let mut bytes = Vec::new();

@@ -104,7 +104,7 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 10] = [
 ];
 
 /// Other names of units, as people write them.
-const ALIASES: [(&str, &str); 20] = [
+const ALIASES: [(&str, &str); 24] = [
     ("sec", "s"),
     ("secs", "s"),
     ("second", "s"),
@@ -125,15 +125,41 @@ const ALIASES: [(&str, &str); 20] = [
     ("cm/d", "cm/day"),
     ("mm/d", "mm/day"),
     ("m/yr", "m/year"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("radian", "rad"),
+    ("radians", "rad"),
 ];
 
-/// Units of stress that are read, but not offered.
-const OLDER_STRESSES: (Dimension, &[(&str, Worth)]) =
-    (Dimension::Stress, &[("bar", Ten(5)), ("kgf/cm2", Times(98_066.5)), ("tf/m2", Times(9806.65))]);
+/// Pa  One pound-force per square foot: 4.448 221 615 260 5 N over (0.3048 m)^2.
+const PSF: f64 = 47.880_258_980_335_84;
+
+/// Units that are read, but not offered.
+const NOT_OFFERED: [(Dimension, &[(&str, Worth)]); 6] = [
+    (Dimension::Length, &[("ft", Times(0.3048)), ("in", Times(0.0254))]),
+    (
+        Dimension::Stress,
+        &[
+            ("bar", Ten(5)),
+            ("kgf/m2", Times(9.806_65)),
+            ("kgf/cm2", Times(98_066.5)),
+            ("tf/m2", Times(9806.65)),
+            ("psf", Times(PSF)),
+            ("ksf", Times(1e3 * PSF)),
+            ("tsf", Times(2e3 * PSF)),
+            ("psi", Times(144.0 * PSF)),
+            ("ksi", Times(144e3 * PSF)),
+        ],
+    ),
+    (Dimension::UnitWeight, &[("pcf", Over(0.3048 / PSF))]),
+    (Dimension::Velocity, &[("ft/s", Times(0.3048)), ("ft/day", Over(DAY / 0.3048))]),
+    (Dimension::LineForce, &[("lbf/ft", Times(0.3048 * PSF)), ("kip/ft", Times(304.8 * PSF))]),
+    (Dimension::Force, &[("lbf", Times(0.3048 * 0.3048 * PSF)), ("kip", Times(304.8 * 0.3048 * PSF))]),
+];
 
 /// Masses per area, which some write for a stress, and the unit of force per area that is meant.
 const MASSES_PER_AREA: [(&str, &str); 4] =
-    [("t/m2", "tf/m2"), ("kg/cm2", "kgf/cm2"), ("kg/m2", "kPa"), ("ton/m2", "tf/m2")];
+    [("t/m2", "tf/m2"), ("kg/cm2", "kgf/cm2"), ("kg/m2", "kgf/m2"), ("ton/m2", "tf/m2")];
 
 /// The dimensions that have units, in the order of messages.
 pub(crate) fn dimensions() -> impl Iterator<Item = Dimension> {
@@ -260,7 +286,7 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
     let known = |(dimension, units): &(Dimension, &'static [(&'static str, Worth)])| {
         units.iter().find(|(name, _)| *name == plain).map(|(_, worth)| (*dimension, *worth))
     };
-    let Some((dimension, worth)) = UNITS.iter().chain([&OLDER_STRESSES]).find_map(known) else {
+    let Some((dimension, worth)) = UNITS.iter().chain(&NOT_OFFERED).find_map(known) else {
         let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
         let near = hint(&plain, all.flat_map(|(_, units)| units.iter().map(|(name, _)| *name)));
         let end = if near.is_empty() { "." } else { &near };
@@ -382,6 +408,15 @@ mod tests {
             ("30 sec", Time, 30.0),
             ("2 bar", Stress, 2e5),
             ("1 kgf/cm2", Stress, 98_066.5),
+            ("200 psf", Stress, 9576.051_796_067_168),
+            ("1 tsf", Stress, 95_760.517_960_671_68),
+            ("1 psi", Stress, 6894.757_293_168_361),
+            ("125 pcf", UnitWeight, 19635.932980780774),
+            ("1 ft", Length, 0.3048),
+            ("1 in", Length, 0.0254),
+            ("1 lbf", Force, 4.448_221_615_260_5),
+            ("1 kip/ft", LineForce, 14_593.902_937_206_364),
+            ("30 degrees", Angle, 30.0),
             ("10 tf/m^2", Stress, 98_066.5),
             ("2 week", Time, 1_209_600.0),
             ("1e-9 m/s", Velocity, 1e-9),

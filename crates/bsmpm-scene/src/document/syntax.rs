@@ -79,7 +79,11 @@ fn explained(source: &Source<'_>, span: &std::ops::Range<usize>, message: &str) 
     if is_number_with_unit(value) {
         return format!("E0043: `{}` has a unit, but no quotes. Write \"{}\".", shortened(value), shortened(value));
     }
-    format!("E0005: the line does not follow the TOML format: {message}. Correct this line or the line before.")
+    let remedy = match source.line(span.start) {
+        1 => "Check that this is a case file, and correct the line.",
+        _ => "Correct this line or the line before.",
+    };
+    format!("E0005: the line does not follow the TOML format: {message}. {remedy}")
 }
 
 /// The number with a decimal point if it is written with a comma.

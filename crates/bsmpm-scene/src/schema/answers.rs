@@ -27,12 +27,12 @@ const fn anywhere(names: &'static [&'static str], text: &'static str) -> Answer 
 
 const ANSWERS: &[Answer] = &[
     symbol(
-        &["E", "Eref", "E50", "E_ref", "modulus"],
+        &["E", "Eref", "E50", "E_ref", "E_mod", "Emod", "modulus"],
         "Young's modulus is the key `young`, a constant. For E50 take its value at the stress of the problem.",
     ),
     symbol(&["nu", "poisson_ratio", "poissons_ratio"], "Poisson's ratio is the key `poisson`."),
     symbol(
-        &["phi", "phi_prime", "phi'", "friction_angle_deg"],
+        &["phi", "phi_prime", "phi'", "friction_angle_deg", "friction_coefficient"],
         "The friction angle is the key `friction_angle`, in degrees.",
     ),
     symbol(&["psi", "psi'"], "The dilation angle is the key `dilation_angle`, in degrees."),
@@ -72,8 +72,8 @@ const ANSWERS: &[Answer] = &[
     symbol(&["St", "S_t"], "The sensitivity is the key `sensitivity`, of model = \"sensitive-clay\"."),
     symbol(
         &["tension_cutoff", "tension_cut_off", "tensile_strength"],
-        "E0012: a tension cut-off is not available: the soil carries a mean tension of up to c / tan(phi). Reduce \
-         `cohesion`, which also reduces the shear strength. For soil with cohesion = 0, set separation = \"gap\".",
+        "E0012: a tension cut-off is not available. Delete this line. The soil then carries a mean tension of up to c / tan(phi). \
+         For less tension reduce `cohesion`, which also reduces the shear strength.",
     ),
     symbol(
         &["adhesion"],
@@ -118,5 +118,8 @@ const ANSWERS: &[Answer] = &[
 /// its code where what is meant does not exist.
 pub(crate) fn answer(table: &Table, key: &str) -> Option<&'static str> {
     let is_meant = |answer: &&Answer| answer.table.is_empty() || answer.table == table.header;
-    ANSWERS.iter().filter(is_meant).find(|answer| answer.names.contains(&key)).map(|answer| answer.text)
+    let is_alike = |answer: &&Answer| answer.names.iter().any(|name| name.eq_ignore_ascii_case(key));
+    let is_same = |answer: &&Answer| answer.names.contains(&key);
+    let same = ANSWERS.iter().filter(is_meant).find(is_same);
+    same.or_else(|| ANSWERS.iter().filter(is_meant).find(is_alike)).map(|answer| answer.text)
 }

@@ -404,7 +404,7 @@ static DAMPING: Table = Table {
 const POISSON: Range = Range {
     lower: Excluded(-1.0),
     upper: Excluded(0.5),
-    why: "at 0.5 the material is incompressible and its elastic stiffness singular",
+    why: "at 0.5 the material is incompressible; for undrained soil use 0.49 with model = \"tresca\", or drainage = \"undrained\"",
 };
 /// Slopes of compression.
 const BELOW_1: Range = Range::of(Excluded(0.0), Excluded(1.0));

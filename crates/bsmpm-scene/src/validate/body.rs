@@ -214,11 +214,20 @@ pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
     let mut pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
     let both = |(i, j): &(usize, usize)| overlap(&bodies[*i], &bodies[*j], grid, &mut work) && together(*i, *j);
     if let Some((i, j)) = pairs.find(both) {
+        let [lower, upper] = common_box(&bodies[i], &bodies[j], grid.dims());
         report.warn(format!(
-            "W0213: body.{i} and body.{j} overlap, so the soil in the overlap is counted twice. Move one of the \
-             bodies, or cut the overlap out of one with `subtract`."
+            "W0213: body.{i} and body.{j} overlap between {lower:.3?} and {upper:.3?} m, so this soil is counted twice. \
+             Correct the corners of one body, or cut the shape of the other out of it with `subtract`."
         ));
     }
+}
+
+/// m  Lower and upper corner of the box that the boxes around two bodies have in common.
+fn common_box(a: &Body, b: &Body, dims: usize) -> [Vec<f64>; 2] {
+    let ([a_lower, a_upper], [b_lower, b_upper]) = (a.region.corners(), b.region.corners());
+    let lower = (0..dims).map(|axis| a_lower[axis].max(b_lower[axis])).collect();
+    let upper = (0..dims).map(|axis| a_upper[axis].min(b_upper[axis])).collect();
+    [lower, upper]
 }
 
 /// Whether two bodies overlap by more than rounding; for shapes only as long as the `work` so far is bearable.

@@ -402,7 +402,7 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
             "E0660: no [[history]] records a column `{}` ({known}). Correct the name, or add a [[history]].",
             shortened(quantity)
         );
-        record.consequence("quantity", message, &["history"], report);
+        record.consequence("quantity", message, &["history", "geometry"], report);
         return None;
     };
     let at = if record.gives("at") { record.number("at")? } else { end? };

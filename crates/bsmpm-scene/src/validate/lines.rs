@@ -64,12 +64,12 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
         let place = place_of(case, *axis, *line);
         report.warn(match chosen {
             C0Lines::None => format!(
-                "W0216: grid.c0_lines: there is no C0 line (where strains may jump) at {place} ({reason}). Stresses \
-                 within three cells of this place can be off by tens of per cent. Use \"automatic\"."
+                "W0216: {reason}, at {place}. The grid keeps strains smooth there, so stresses within three cells can be \
+                 off by tens of per cent. Set grid.c0_lines = \"automatic\"."
             ),
             C0Lines::Automatic => format!(
-                "W0217: grid.c0_lines: because pore water flows, there is no C0 line (where strains may jump) at \
-                 {place} ({reason}). Stresses near this place can be off by tens of per cent. Use smaller cells there."
+                "W0217: {reason}, at {place}. The grid keeps strains smooth there, because pore water flows, so stresses \
+                 nearby can be off by tens of per cent. Use smaller cells there."
             ),
         });
     }
@@ -77,8 +77,8 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     let jumps = crossed.or(placed.first().map(|(place, _)| *place));
     if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, record)) {
         report.warn(format!(
-            "W0218: grid.c0_lines: at the C0 line {} the undrained strength of material.{name} is inaccurate, because \
-             this material has friction. Loads can be off by 4 %. Compare a run with friction_angle = 0.",
+            "W0218: material.{name} has friction, so its undrained strength is inaccurate at {}, where the grid lets \
+             strains jump. Loads can be off by 4 %. Compare a run with model = \"tresca\".",
             place_of(case, axis, line)
         ));
     }

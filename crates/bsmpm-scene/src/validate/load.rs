@@ -148,8 +148,8 @@ fn warn_of_nothing(record: &Record, key: &str, load: [f64; 3], report: &mut Repo
 /// Says that no body lies at a place of a load, m.
 fn no_body(at: &[f64]) -> String {
     format!(
-        "E0401: no body lies at {at:.3?} m at the start, so nothing carries this load. Move the load to a body (at \
-         most half a spacing of material points away)."
+        "E0401: no body lies at {at:.3?} m at the start, so nothing carries this load. Move the load to \
+         the surface of a body."
     )
 }
 

@@ -299,9 +299,9 @@ fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, 
     let path = &record.path;
     report.warn(match instead {
         Some((young, bulk)) => format!(
-            "W0303: {path}: poisson = {poisson} makes the pressure oscillate. Use a consolidation analysis with \
-             drainage = \"undrained\", young = {young:.5e}, poisson = {DRAINED}, porosity = {POROSITY}, water.bulk = \
-             {bulk:.5e}."
+            "W0303: {path}: poisson = {poisson} makes pressures oscillate. Set drainage = \"undrained\", young = \
+             {young:.5e}, poisson = {DRAINED}, porosity = {POROSITY}, water.bulk = {bulk:.5e}, analysis.type = \
+             \"consolidation\"."
         ),
         None => format!(
             "W0303: {path}: poisson = {poisson} makes the pressure oscillate, and the solver needs many iterations. \

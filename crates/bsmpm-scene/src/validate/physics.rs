@@ -130,9 +130,19 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
     if free.is_empty() {
         return;
     }
+    let reached: Vec<String> = (0..case.grid.dims())
+        .flat_map(|axis| [(axis, false), (axis, true)])
+        .filter(|&(axis, upper)| reached(case, axis, upper))
+        .map(|(axis, upper)| Side::of(case.geometry)[axis][usize::from(upper)].to_string())
+        .collect();
+    let remedy = match reached.iter().find(|name| *name == "bottom").or(reached.first()) {
+        Some(name) => {
+            format!("In [boundary], set {name} = \"fixed\" (the bodies reach: {}).", reached.join(", "))
+        }
+        None => "Extend a body to a boundary of the grid, and set that boundary to \"fixed\".".to_owned(),
+    };
     let message = format!(
-        "E0270: no support holds the bodies along {}, so a quasi-static analysis has no solution. In [boundary], set \
-         a face that a body reaches to \"fixed\" or \"roller\".",
+        "E0270: no support holds the bodies along {}, so a quasi-static analysis has no solution. {remedy}",
         free.join(" and ")
     );
     report.error(record.place("boundary"), "boundary", message);
@@ -366,7 +376,7 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
     if case.analysis.regime == Regime::QuasiStatic && !loaded(case) {
         report.warn(
             "W0674: the case has no load (gravity, force, pressure or prescribed motion), so all results will be 0. \
-             Add a load, for example [gravity].",
+             Add a load, for example the table [gravity] with acceleration = [0, -9.81] (in 3-D [0, 0, -9.81]).",
         );
     }
 }

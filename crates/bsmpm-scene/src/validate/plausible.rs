@@ -1,9 +1,10 @@
 //! Whether the physics is plausible: values that look like another unit, gravity that does not point down, bodies,
 //! histories and loads that are out of scale. Each is a warning with its probable cause. Who writes a value with its
-//! unit says that it is meant.
+//! unit says that it is meant, but for the size of bodies.
 
 mod direction;
 mod place;
+mod slope;
 mod support;
 mod value;
 
@@ -24,6 +25,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     place::bodies(case, root, report);
     place::histories(case, root, report);
     support::bodies(case, root, report);
+    slope::bodies(case, root, report);
 }
 
 /// What the stresses of a case are like.
@@ -47,9 +49,7 @@ impl Scale {
         let stress = (density * size * height).max(load);
         Self { height, stress: (stress > 0.0).then_some(stress) }
     }
-}
 
-impl Scale {
     /// The stress in words, if it is known.
     fn shown(&self) -> String {
         self.stress.map_or(String::new(), |stress| format!(" ({} kPa)", brief(1e-3 * stress)))

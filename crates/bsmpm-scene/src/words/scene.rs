@@ -13,7 +13,11 @@ choice! {
         Axisymmetric = "axisymmetric",
         /// Three dimensions: z is the vertical.
         Solid = "3d",
-    } earlier ["solid": "3d"]
+    } misnomers [
+        "2d": "Use \"plane-strain\" or \"axisymmetric\"",
+        "2D": "Use \"plane-strain\" or \"axisymmetric\"",
+        "plane-stress": "Plane stress is not available. Use \"plane-strain\""
+    ] earlier ["solid": "3d"]
 }
 
 impl Geometry {

@@ -219,7 +219,7 @@ fn water_that_hangs_and_steps_that_are_narrow_are_warned_of() {
         bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
     };
     let has = |warnings: &[String], words: &str| warnings.iter().any(|warning| warning.contains(words));
-    let hangs = "the soil up to 5.00 m above the water table";
+    let hangs = "the soil stays saturated to 5.00 m above the water table";
     assert!(has(&case("level = 10.0", ""), hangs));
     assert!(!has(&case("level = 15.0", ""), "W0553"));
     let retention = "retention = { alpha = 0.1, n = 2.0, residual = 0.1 }";

@@ -84,7 +84,7 @@ pub const LANGUAGE: &[Row] = &[
     row("poisson  = 0.3", "poisson  = 1979-05-27", "material.sand.poisson", "found 1979-05-27"),
     row("title    = \"Every key that there is\"", "title = 5", "title", "expected a text"),
     row("title    = \"Every key", "title = \"Every\\nkey", "title", "without control characters"),
-    row("geometry = \"plane-strain\"", "geometry = \"plane-stress\"", "geometry", "did you mean `plane-strain`?"),
+    row("geometry = \"plane-strain\"", "geometry = \"plane-stress\"", "geometry", "Use \"plane-strain\""),
     row("reproducible     = true", "reproducible = \"yes\"", "solver.reproducible", "expected true or false"),
     row("residuals = true", "residuals = \"all\"", "output.residuals", "expected true or false"),
     row("reproducible     = true", "reproducible = 1", "solver.reproducible", "found 1"),

@@ -73,8 +73,8 @@ fn an_error_reads_well() {
     let text = DYNAMIC.replace("poisson     = 0.49", "poisson     = 0.6");
     let error = &refuse(text.as_bytes())[0];
     let line = 1 + text[..text.find("0.6").unwrap()].matches('\n').count();
-    let message = "0.6 is outside the allowed range (-1 < poisson < 0.5): at 0.5 the material is incompressible and \
-    its elastic stiffness singular. Correct the value.";
+    let message = "0.6 is outside the allowed range (-1 < poisson < 0.5): at 0.5 the material is incompressible; \
+    for undrained soil use 0.49 with model = \"tresca\", or drainage = \"undrained\". Correct the value.";
     assert_eq!(error.to_string(), format!("case.toml:{line}:15: error E0010: material.clay.poisson: {message}"));
     let block = format!("{error:#}");
     let lines: Vec<&str> = block.lines().skip(1).collect();

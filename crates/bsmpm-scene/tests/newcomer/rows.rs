@@ -41,7 +41,7 @@ pub const ROWS: &[Row] = &[
             "[[0.0, 0.0], [32.0, 0.0], [12.0, 10.0], [0.0, 10.0]]",
             "[[0.0, 0.0], [0.032, 0.0], [0.012, 0.010], [0.0, 0.010]]",
         )],
-        says: Says::Warning(&["W0105", "body.0", "32 mm"]),
+        says: Says::Warning(&["W0105", "body.0", "0.032 m x 0.01 m", "40 m x 12 m"]),
     },
     Row {
         number: "7",
@@ -53,7 +53,7 @@ pub const ROWS: &[Row] = &[
         number: "8",
         what: "no gravity",
         edits: &[("gravity  = { acceleration = [0.0, -9.81], ramp = 1.0 }\n", "")],
-        says: Says::Warning(&["W0674", "no load", "[gravity]"]),
+        says: Says::Warning(&["W0674", "no load", "[gravity] with acceleration = [0, -9.81]"]),
     },
     Row {
         number: "9",
@@ -103,11 +103,12 @@ pub const ROWS: &[Row] = &[
         edits: &[("\"10 kPa\"", "\"10 t/m2\"")],
         says: Says::Errors(1, &["tf/m2"]),
     },
+    Row { number: "15b", what: "a stress in psf", edits: &[("\"10 kPa\"", "\"200 psf\"")], says: Says::Nothing },
     Row {
-        number: "15b",
-        what: "a stress in psf",
-        edits: &[("\"10 kPa\"", "\"200 psf\"")],
-        says: Says::Errors(1, &["E0020", "`psf`", "kPa"]),
+        number: "15c",
+        what: "kg/m2 for a stress",
+        edits: &[("\"10 kPa\"", "\"1000 kg/m2\"")],
+        says: Says::Errors(1, &["kgf/m2"]),
     },
     Row { number: "16", what: "misspelt key", edits: &[("poisson", "poison")], says: Says::Errors(1, &["`poisson`"]) },
     Row {
@@ -115,6 +116,12 @@ pub const ROWS: &[Row] = &[
         what: "symbols nu and su",
         edits: &[("poisson        = 0.3", "nu = 0.3"), ("cohesion       = \"10 kPa\"", "su = \"10 kPa\"")],
         says: Says::Errors(2, &["`poisson`", "`cohesion`"]),
+    },
+    Row {
+        number: "17b",
+        what: "symbols in capitals",
+        edits: &[("poisson        = 0.3", "NU = 0.3"), ("friction_angle = 20.0", "PHI = 20.0")],
+        says: Says::Errors(2, &["is the key `poisson`", "is the key `friction_angle`"]),
     },
     Row {
         number: "18",
@@ -162,13 +169,25 @@ pub const ROWS: &[Row] = &[
             "[[body]]\nmaterial = \"soil\"\npolygon  = [[0.0, 0.0], [32.0, 0.0], [12.0, 10.0], [0.0, 10.0]]\n",
             "",
         )],
-        says: Says::Errors(1, &["body", "missing"]),
+        says: Says::Errors(1, &["E0052", "no table [[body]]", "`material`"]),
     },
     Row {
         number: "25",
         what: "[body] for [[body]]",
         edits: &[("[[body]]", "[body]")],
         says: Says::Errors(1, &["E0047", "[[body]]"]),
+    },
+    Row {
+        number: "25b",
+        what: "[material] without a name",
+        edits: &[("[material.soil]", "[material]")],
+        says: Says::Errors(1, &["E0051", "[material.soil]"]),
+    },
+    Row {
+        number: "25c",
+        what: "geometry of two dimensions",
+        edits: &[("\"plane-strain\"", "\"2D\"")],
+        says: Says::Errors(1, &["E0017", "Use \"plane-strain\" or \"axisymmetric\""]),
     },
     Row {
         number: "26",
@@ -208,7 +227,7 @@ pub const ROWS: &[Row] = &[
             "[[history]]\nquantity = \"max-displacement\"\n\n\
              [[body]]\nmaterial = \"soil\"\nbox = { lower = [2.0, 2.0], upper = [5.0, 5.0] }\n",
         )],
-        says: Says::Warning(&["W0213", "subtract"]),
+        says: Says::Warning(&["W0213", "[2.000, 2.000] and [5.000, 5.000] m", "subtract"]),
     },
     Row {
         number: "32",
@@ -267,7 +286,7 @@ pub const ROWS: &[Row] = &[
         number: "39",
         what: "Poisson's ratio of 0.5",
         edits: &[("= 0.3", "= 0.5")],
-        says: Says::Errors(1, &["poisson < 0.5"]),
+        says: Says::Errors(1, &["poisson < 0.5", "0.49"]),
     },
     Row {
         number: "39b",
@@ -290,12 +309,17 @@ pub const ROWS: &[Row] = &[
         )],
         says: Says::Errors(1, &["E0045", "line 8"]),
     },
-    Row { number: "41", what: "slope without cohesion", edits: &[("\"10 kPa\"", "0.0")], says: Says::Nothing },
+    Row {
+        number: "41",
+        what: "slope without cohesion",
+        edits: &[("\"10 kPa\"", "0.0")],
+        says: Says::Warning(&["W0111", "26.6 degrees", "`cohesion`"]),
+    },
     Row {
         number: "42",
         what: "no supports",
         edits: &[("boundary = { bottom = \"fixed\", left = \"roller\", right = \"roller\" }", "boundary = { }")],
-        says: Says::Errors(1, &["E0270", "x and y", "\"roller\""]),
+        says: Says::Errors(1, &["E0270", "x and y", "bottom = \"fixed\"", "left, bottom"]),
     },
     Row {
         number: "43",
@@ -320,6 +344,6 @@ pub const ROWS: &[Row] = &[
             "[[history]]\nquantity = \"max-displacement\"\n",
             "[[history]]\nquantity = \"max-displacement\"\n\n[[traction]]\nfrom = [20.0, 8.0]\nto = [22.0, 8.0]\npressure = \"10 kPa\"\n",
         )],
-        says: Says::Errors(1, &["E0401", "to a body"]),
+        says: Says::Errors(1, &["E0401", "[20.010, 8.000] m", "surface of a body"]),
     },
 ];

@@ -435,8 +435,8 @@ fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let most = above.fold(0.0, f64::max);
         if most > cell {
             report.warn(format!(
-                "W0553: material.{}: the soil up to {most:.2} m above the water table stays saturated, so suction \
-                 (to {:.0} kPa) strengthens it. Add `retention`, or use drainage = \"hydrostatic\" for dry soil.",
+                "W0553: material.{}: the soil stays saturated to {most:.2} m above the water table, and suction (to \
+                 {:.0} kPa) strengthens it. Add `retention`. If that soil is dry, set drainage = \"hydrostatic\".",
                 named.name,
                 1e-3 * most * water.unit_weight
             ));

@@ -1,11 +1,11 @@
-//! Bodies that are tiny in their grid, as millimetres typed as metres are, and histories at places without material.
+//! Bodies that are tiny in their grid, as with coordinates in another unit, and histories at places without material.
 
 use crate::case::{Body, Case};
 use crate::record::Record;
-use crate::report::{Report, listed};
+use crate::report::{Report, brief, listed};
 use crate::validate::place::is_in;
 
-/// Size of a body over that of the grid, along each axis, below which millimetres are taken for metres.
+/// Size of a body over that of the grid, along each axis, below which a unit is probably wrong.
 const TINY: f64 = 1.0 / 300.0;
 /// Parts of a cell around a place at which material is looked for.
 const DISTANCES: [f64; 6] = [0.0, 0.05, 0.25, 0.5, 0.75, 1.0];
@@ -13,20 +13,26 @@ const DISTANCES: [f64; 6] = [0.0, 0.05, 0.25, 0.5, 0.75, 1.0];
 /// Warns of bodies that are tiny in their grid.
 pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
     let dims = case.grid.dims();
-    let part = |body: &Body| {
+    let is_tiny = |body: &Body| {
         let [lower, upper] = body.region.corners();
-        let along = |axis: usize| (upper[axis] - lower[axis]) / case.grid.axes[axis].length();
-        (0..dims).map(along).fold(0.0, f64::max)
+        let part = |axis: usize| (upper[axis] - lower[axis]) / case.grid.axes[axis].length();
+        (0..dims).map(part).fold(0.0, f64::max) < TINY
     };
     let all = case.bodies.iter().zip(root.records("body"));
-    let tiny: Vec<(f64, String)> =
-        all.map(|(body, record)| (part(body), record.path.clone())).filter(|(part, _)| *part < TINY).collect();
-    let Some(most) = tiny.iter().map(|(part, _)| *part).reduce(f64::max) else { return };
-    let paths: Vec<String> = tiny.into_iter().map(|(_, path)| path).collect();
+    let tiny: Vec<(&Body, &Record)> = all.filter(|(body, _)| is_tiny(body)).collect();
+    let Some((first, _)) = tiny.first() else { return };
+    let paths: Vec<String> = tiny.iter().map(|(_, record)| record.path.clone()).collect();
+    let [lower, upper] = first.region.corners();
+    let size = |axis: usize| format!("{} m", brief(upper[axis] - lower[axis]));
+    let length = |axis: usize| format!("{} m", brief(case.grid.axes[axis].length()));
+    let sizes: Vec<String> = (0..dims).map(size).collect();
+    let lengths: Vec<String> = (0..dims).map(length).collect();
     report.warn(format!(
-        "W0105: {}: the body is tiny: at most {most:.1e} times as large as the grid. Lengths without a unit are in m. \
-         If mm are meant, write the unit, such as \"32 mm\"; otherwise use a smaller grid.",
-        listed(&paths)
+        "W0105: {}: the body is tiny: {} in a grid of {}. Correct its coordinates (in m, unless each has a unit), or \
+         use a smaller grid (grid.lower, grid.upper).",
+        listed(&paths),
+        sizes.join(" x "),
+        lengths.join(" x "),
     ));
 }
 
