@@ -10,10 +10,17 @@ pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) 
     if length > LONGEST {
         return None;
     }
-    // With one edit a word of two letters is any other.
-    let allowed = if length <= 2 { 0 } else { (length / 3).clamp(1, 4) };
-    let rated = known.into_iter().map(|name| (strsim::osa_distance(&word, &folded(name)), name));
+    let allowed = (length / 3).clamp(1, 4);
+    // With one edit a word of two letters is any other: they may only be exchanged.
+    let known = known.into_iter().filter(|name| length > 2 || sorted(&word) == sorted(&folded(name)));
+    let rated = known.map(|name| (strsim::osa_distance(&word, &folded(name)), name));
     rated.filter(|(distance, _)| *distance <= allowed).min_by_key(|(distance, _)| *distance).map(|(_, name)| name)
+}
+
+fn sorted(word: &str) -> Vec<char> {
+    let mut letters: Vec<char> = word.chars().collect();
+    letters.sort_unstable();
+    letters
 }
 
 /// `; did you mean ...?`, or nothing.
@@ -44,6 +51,7 @@ mod tests {
         assert_eq!(nearest("yuong", known), Some("young"));
         assert_eq!(nearest("Poisson", known), Some("poisson"));
         assert_eq!(nearest("points-per-cells", known), Some("points_per_cell"));
+        assert_eq!((nearest("td", ["dt", "tol"]), nearest("nu", ["ru", "mu"])), (Some("dt"), None));
         assert_eq!(nearest("viscosity", known), None);
         assert_eq!(nearest(&"x".repeat(100_000), known), None);
     }

@@ -271,12 +271,14 @@ fn missing(key: &Key) -> String {
     let (Kind::Tables(table) | Kind::Named(table)) = key.kind else {
         return format!("E0014: this key is missing. Add it; its value is {}.", key.kind);
     };
-    let required = table.keys.iter().filter(|key| matches!(key.presence, Presence::Required));
+    // A preset fills the others.
+    let is_named = |key: &&Key| matches!(key.presence, Presence::Required) && !FILLED.contains(&key.name);
+    let required = table.keys.iter().filter(is_named);
     let groups = table.exclusive.iter().filter(|group| group.required);
     let one_of =
         |group: &Group| group.keys.iter().take(2).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or ");
     let names: Vec<String> = required.map(|key| format!("`{}`", key.name)).chain(groups.map(one_of)).collect();
-    format!("E0052: the case has no table {}. Add one, with {}.", table.header, names.join(", "))
+    format!("E0052: the table {} is missing. Add one, with {}.", table.header, names.join(" and "))
 }
 
 impl Record {

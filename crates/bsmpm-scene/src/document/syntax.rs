@@ -76,7 +76,8 @@ fn explained(source: &Source<'_>, span: &std::ops::Range<usize>, message: &str) 
     if let Some(number) = with_decimal_comma(value) {
         return format!("E0042: `{}` has a decimal comma. Write a decimal point: {number}.", shortened(value));
     }
-    if is_number_with_unit(value) {
+    if let Some(value) = [value, item_at(source.text, span.start)].into_iter().find(|value| is_number_with_unit(value))
+    {
         return format!("E0043: `{}` has a unit, but no quotes. Write \"{}\".", shortened(value), shortened(value));
     }
     let remedy = match source.line(span.start) {
@@ -84,6 +85,15 @@ fn explained(source: &Source<'_>, span: &std::ops::Range<usize>, message: &str) 
         _ => "Correct this line or the line before.",
     };
     format!("E0005: the line does not follow the TOML format: {message}. {remedy}")
+}
+
+/// The item of a list or of a table in braces that a byte lies in.
+fn item_at(text: &str, at: usize) -> &str {
+    let is_before = |c: char| "=,[{\n".contains(c);
+    let is_behind = |c: char| ",]}#\n".contains(c);
+    let start = text[..at].rfind(is_before).map_or(0, |before| before + 1);
+    let end = text[at..].find(is_behind).map_or(text.len(), |length| at + length);
+    text[start..end].trim()
 }
 
 /// The number with a decimal point if it is written with a comma.
@@ -308,6 +318,8 @@ mod tests {
         assert!(only("a = 0,3\n").contains("`0,3` has a decimal comma. Write a decimal point: 0.3."));
         assert!(only("a = -10,25 # m\n").contains("Write a decimal point: -10.25."));
         assert!(only("a = 10 kPa\n").contains("`10 kPa` has a unit, but no quotes. Write \"10 kPa\"."));
+        assert!(only("a = [40 m, 12.0]\n").contains("`40 m` has a unit, but no quotes. Write \"40 m\"."));
+        assert!(only("a = { b = 2, c = 3 kN }\n").contains("Write \"3 kN\"."));
         assert!(only("a = [1, 2\n, 3]]\n").contains("E0005: "));
     }
 }

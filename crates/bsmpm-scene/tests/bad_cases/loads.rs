@@ -81,7 +81,7 @@ pub const LAYERS: &[Row] = &[
     row("\"2 MPa/m\"", "true", "material.till.young.per_metre", "a number (Pa/m) or a string with a unit (Pa/m, kPa/m"),
     row("\"2 MPa/m\"", "\"2e30 MPa/m\"", "material.till.young.per_metre", "E0010"),
     row("at_y = 3, per_metre = 500", "per_metre = 500", "material.till.cohesion.at_y", "missing"),
-    row("at_y = 3, per_metre", "y = 3, per_metre", "material.till.cohesion.y", "the key `y` does not exist"),
+    row("at_y = 3, per_metre", "y = 3, per_metre", "material.till.cohesion.y", "`y` is not a known key of"),
     row("per_metre = \"2 MPa/m\"", "per_metre = \"-7 MPa/m\"", "material.till.young", "E0303"),
     row("value = \"1 kPa\", at_y = 3", "value = 0, at_y = 2", "material.till.cohesion", "E0303 .. y = 2.5 m .. -250"),
     row("value = 30, at_y", "value = 89.5, at_y", "material.till.friction_angle", "E0303 .. y = 1.5 m .. 90.25"),

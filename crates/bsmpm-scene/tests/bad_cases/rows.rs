@@ -7,7 +7,7 @@ pub const LANGUAGE: &[Row] = &[
     row("poisson  = 0.3", "poissson = 0.3", "material.sand.poissson", "did you mean `poisson`?"),
     row("points_per_cell = 3", "points-per-cell = 3", "body.0.points-per-cell", "did you mean `points_per_cell`?"),
     row("title    =", "young    =", "young", "it belongs to [material.NAME]"),
-    row("title    =", "colour   =", "colour", "the key `colour` does not exist"),
+    row("title    =", "colour   =", "colour", "`colour` is not a known key of the file"),
     row("[footing]", "[[probe]]\n[footing]", "probe", "a table [[history]] with `quantity` and `at`"),
     row("[footing]", "[groundwater]\n[footing]", "groundwater", "the table `[water]`"),
     row(

@@ -113,7 +113,7 @@ fn every_key_renamed_is_unknown_and_every_key_removed_is_missed_if_it_must_be_th
         for written in written::all(&base) {
             let Some(name) = &written.name else { continue };
             let renamed = format!("{}qqq{}", &base[..name.end], &base[name.end..]);
-            refuses(&renamed, &format!("{}qqq", written.path), "does not exist", Some(line(&base, name.start)));
+            refuses(&renamed, &format!("{}qqq", written.path), "is not a known key of", Some(line(&base, name.start)));
             if !written.is_entry {
                 continue;
             }

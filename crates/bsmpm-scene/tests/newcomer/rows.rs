@@ -169,7 +169,7 @@ pub const ROWS: &[Row] = &[
             "[[body]]\nmaterial = \"soil\"\npolygon  = [[0.0, 0.0], [32.0, 0.0], [12.0, 10.0], [0.0, 10.0]]\n",
             "",
         )],
-        says: Says::Errors(1, &["E0052", "no table [[body]]", "`material`"]),
+        says: Says::Errors(1, &["E0052", "[[body]] is missing", "`material`"]),
     },
     Row {
         number: "25",
