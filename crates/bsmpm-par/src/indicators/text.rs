@@ -30,9 +30,7 @@ pub(super) fn of(name: &str, case: &Case, value: f64) -> String {
 const NOISE_ABOUT_AVERAGE: &str = "I0001: the pressures of neighbouring material points scatter by {value} of \
     their mean ({range}). \
     Do not use stresses of single points. {remedy}";
-const NOISE_ABOUT_PLANE: &str = "I0002: the pressures of neighbouring material points scatter by {value} of their \
-    mean about a linear \
-    trend ({range}). Do not use stresses of single points. {remedy}";
+const NOISE_ABOUT_PLANE: &str = "I0002: the pressures of neighbouring material points scatter by {value} of their mean about a linear trend in space ({range}). Do not use stresses of single points. {remedy}";
 const ENERGY_MADE: &str = "I0012: numerical dissipation is {value} of the peak energy ({range}). The algorithm \
     adds energy to the motion. Reduce `analysis.dt`.";
 const GROWTH: &str = "I0013: the algorithm has created {value} of the peak energy ({range}). The computed motion is \
@@ -80,11 +78,10 @@ fn against_noise(case: &Case) -> &'static str {
             "Set `stabilisation.method = \"consistent-f-bar\"`."
         }
         Stabilisation::ConsistentFBar if is_rubbery && is_static && case.geometry != Geometry::Solid => {
-            "State the material as undrained soil (`drainage = \"undrained\"`), or set `stabilisation.method = \
-             \"subgrid-f-bar\"`."
+            "If the soil is undrained, set `drainage = \"undrained\"`, otherwise `stabilisation.method = \"subgrid-f-bar\"`."
         }
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar if is_rubbery && is_static => {
-            "State the material as undrained soil (`drainage = \"undrained\"`)."
+            "If the soil is undrained, set `drainage = \"undrained\"`. Otherwise reduce `poisson` to 0.49."
         }
         Stabilisation::ConsistentFBar | Stabilisation::ModifiedFBar if may_fit(case) => {
             "Use smaller cells, or set `solver.quadrature = \"fitted\"`."
@@ -189,13 +186,12 @@ fn constant(name: &str, case: &Case) -> &'static str {
              small. Increase `analysis.steps`, or use smaller cells there."
         }
         "support-pull" => {
-            "I0016: a boundary carries a tension of {value} of the largest reaction ({range}). This is correct at \
-             a plane of \
-             symmetry only. Set other sides to `\"contact\"` in `[boundary]`."
+            "I0016: a boundary pulls on the soil with {value} of the largest reaction ({range}). This is right at a plane of symmetry \
+             only. Set any other boundary to `\"contact\"` in `[boundary]`."
         }
         "front-setback" => {
-            "I0017: the front of the soil moved back by {value} ({range}). Its tip became thinner than half a \
-             cell, so it is not the run-out. Use smaller cells, or a history with `quantity = \"runout\"`."
+            "I0017: the measured front moved back by {value} ({range}). A tip thinner than half a cell is not seen, so the front is not \
+             the run-out. Use smaller cells, or a history with `quantity = \"runout\"`."
         }
         "step-advance" => {
             "I0018: a material point moved by {value} in one step ({range}). The positions of fronts and contacts \
@@ -234,11 +230,11 @@ fn constant(name: &str, case: &Case) -> &'static str {
         }
         "background-load-share" if case.solver.extended_splines == ExtendedSplines::Off => {
             "I0026: the artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
-             The soil there drifts slowly. Remove `solver.extension`."
+             Soil there moves slowly by numerical error. Remove `solver.extension`."
         }
         "background-load-share" => {
             "I0026: the artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
-             The soil there drifts slowly. Increase `body.points_per_cell`."
+             Soil there moves slowly by numerical error. Increase `body.points_per_cell`."
         }
         "stiffness-loss" => {
             "I0027: {which}: its elastic stiffness is {value} times the actual one ({range}). Displacements from \

@@ -116,7 +116,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         };
         let ranks = self.universe.world().size().unsigned_abs() as usize;
         let command = self.arguments.continuing(ranks);
-        format!("The run was stopped by {cause}. Its last converged state is saved. To continue: {command}")
+        let state = if self.simulation.steps() == 0 { "initial" } else { "last converged" };
+        format!("The run was stopped by {cause}. Its {state} state is saved. To continue: {command}")
     }
 }
 

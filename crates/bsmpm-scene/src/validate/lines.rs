@@ -64,12 +64,10 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
         let place = place_of(case, *axis, *line);
         report.warn(match chosen {
             C0Lines::None => format!(
-                "W0216: {reason}, at {place}. The grid keeps strains smooth there, so stresses within three cells can be \
-                 off by tens of per cent. Set grid.c0_lines = \"automatic\"."
+                "W0216: {reason}, at {place}. Without a C0 line the grid cannot represent this, and stresses within three cells can be off by tens of per cent. Set grid.c0_lines = \"automatic\"."
             ),
             C0Lines::Automatic => format!(
-                "W0217: {reason}, at {place}. The grid keeps strains smooth there, because pore water flows, so stresses \
-                 nearby can be off by tens of per cent. Use smaller cells there."
+                "W0217: {reason}, at {place}. With pore water flow the grid cannot represent this, and stresses nearby can be off by tens of per cent. Use smaller cells there."
             ),
         });
     }
@@ -77,8 +75,8 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     let jumps = crossed.or(placed.first().map(|(place, _)| *place));
     if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, record)) {
         report.warn(format!(
-            "W0218: material.{name} has friction, so its undrained strength is inaccurate at {}, where the grid lets \
-             strains jump. Loads can be off by 4 %. Compare a run with model = \"tresca\".",
+            "W0218: the undrained strength of material.{name} depends on the mean stress, which is inaccurate at {}. Loads can be off \
+             by 4 %. Compare a run with model = \"tresca\".",
             place_of(case, axis, line)
         ));
     }

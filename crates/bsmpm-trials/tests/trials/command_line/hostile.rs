@@ -93,7 +93,7 @@ fn i20_what_does_not_fit_into_the_memory_of_the_host_is_refused_once_with_71() {
     let output = run(&[]).expect(71);
     output.says_once("error E0702: the case needs too much memory: about ");
     output.says_once(" GiB on this computer (2 rank(s)), where ");
-    output.says_once("--max-memory");
+    output.says_once("Increase `grid.cell`, reduce `body.points_per_cell`, or use more computers.");
     run(&["--max-memory", "16GiB"]).expect(71).says_once("and --max-memory allows 16.0 GiB");
     // It may be meant for another host.
     let output = run(&["--check"]).expect(0);

@@ -32,8 +32,8 @@ fn a_slope_without_cohesion_that_fails_says_so() {
     let output = Scratch::with_case(&steep).direct(&["case.toml"]).expect(80);
     output.says_once("warning W0111: body.0: the slope of 26.6 degrees is steeper than the friction angle");
     output.says_once("First check warning W0111 (body.0).");
-    let toe = changed(&steep, "friction_angle = 20.0", "friction_angle = 26.5");
-    Scratch::with_case(&toe).direct(&["case.toml"]).expect(80).says_once("material.soil has no cohesion");
+    let cut = changed(&steep, "[32.0, 0.0], [12.0, 10.0]", "[12.0, 0.0], [12.0, 10.0]");
+    Scratch::with_case(&cut).direct(&["case.toml"]).expect(80).says_once("material.soil has no cohesion");
 }
 
 #[test]
