@@ -72,7 +72,7 @@ pub enum Error {
     },
     /// The operating system refused to read or write a file.
     #[error(
-        "E0764: the system cannot {action} `{}` ({}). The program stops. {}.",
+        "E0764: the operating system cannot {action} `{}` ({}). The program stops. {}.",
         path.display(),
         cause(source),
         against(source)
@@ -125,8 +125,8 @@ pub enum Error {
     },
     /// The output directory cannot be made, opened or written to.
     #[error(
-        "E0767: the system cannot {action} the output directory `{}` ({}). Nothing was run. Choose another directory \
-         with `-o`.",
+        "E0767: the operating system cannot {action} the output directory `{}` ({}). Nothing was run. Choose another \
+         directory with `-o`.",
         path.display(),
         cause(source)
     )]
@@ -175,7 +175,8 @@ pub enum Error {
     },
     /// A `run.json` names an output that this program would never have written there; nothing was deleted.
     #[error(
-        "E0771: run.json in `{}` lists the output \"{name}\", which {reason}. Nothing was deleted. Delete the old files yourself.",
+        "E0771: run.json in `{}` lists the output \"{name}\", which {reason}. `--force` deletes the listed files, but \
+         deleted nothing because of this entry. Delete the old files yourself.",
         path.display()
     )]
     UnsafeOutput {

@@ -25,8 +25,8 @@ impl Fault {
         let Some(text) = std::env::var_os("BSMPM_FAULT") else { return Ok(None) };
         match Self::parse(&text.to_string_lossy())? {
             Self { place: FaultPlace::Rank(rank), .. } if rank >= ranks => Err(format!(
-                "E0708: the environment variable BSMPM_FAULT names a rank that this run of {ranks} rank(s) does not \
-                 have. Nothing was run. Name a rank below {ranks}."
+                "E0708: BSMPM_FAULT (environment variable for program tests) names an MPI rank that this run of \
+                 {ranks} rank(s) does not have. Nothing was run. Unset BSMPM_FAULT, or name a rank below {ranks}."
             )),
             fault => Ok(Some(fault)),
         }
@@ -47,8 +47,8 @@ impl Fault {
         let forms = "panic:rank=R,step=N, kill:phase=P,step=N or reject:step=N";
         read().ok_or_else(|| {
             format!(
-                "E0709: the environment variable BSMPM_FAULT has an unknown value, \"{text}\". \
-                Nothing was run. Use one of: {forms}."
+                "E0709: BSMPM_FAULT (environment variable for program tests) has an unknown value, \"{text}\". \
+                 Nothing was run. Unset BSMPM_FAULT, or use one of: {forms}."
             )
         })
     }

@@ -88,8 +88,8 @@ fn not_reached(load: &ManifestLimitLoad) -> String {
              The limit load is not reached. Increase the prescribed displacement."
         ),
         false => format!(
-            "W0728: the load on `{name}` fell by {:.1} % over the last quarter of its path, to {last}. The last load \
-             is not the limit load. Increase `analysis.steps`.",
+            "W0728: the load on `{name}` fell by {:.1} % over the last quarter of its path, to {last}. Steps are too \
+             large or the soil softens, so this is no limit load. Increase `analysis.steps`.",
             -percent
         ),
     }

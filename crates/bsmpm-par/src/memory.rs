@@ -59,8 +59,8 @@ impl Shortage {
     fn refusal(&self) -> String {
         match self.by {
             Limit::Asked => format!(
-                "E0702: the case needs too much memory: {self}. Nothing was run. Increase `grid.cell`, or reduce \
-                 `body.points_per_cell`, or increase this limit."
+                "E0702: the case needs too much memory: {self}. Nothing was run. Increase `grid.cell`, reduce \
+                 `body.points_per_cell`, or increase `--max-memory`."
             ),
             Limit::Free | Limit::Group | Limit::Process => format!(
                 "E0702: the case needs too much memory: {self}. Nothing was run. Increase `grid.cell`, reduce \
@@ -84,8 +84,8 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
         };
         if let (None, Some(shortage)) = (shortage(estimate.bytes), shortage(estimate.bytes_with_newton)) {
             let text = format!(
-                "W0723: Newton's method, which difficult steps use, needs too much memory: {shortage}. The system may \
-                 then end the run. Increase `grid.cell`, or use more computers."
+                "W0723: Newton's method, which the program uses if a step converges badly, needs too much memory: \
+                 {shortage}. The operating system may then end the run. Increase `grid.cell`, or use more computers."
             );
             say(&headed(&text, "warning"));
         }

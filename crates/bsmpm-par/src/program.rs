@@ -142,8 +142,8 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
     let hdf5 = agreed(universe, exit::BUG, hdf5)?;
     let requests = Requests::of_signals().map_err(|error| {
         format!(
-            "E0716: the program cannot set up its reaction to Ctrl-C and kill (system signals): \
-            {error}. Nothing was run. Report this message."
+            "E0716: the operating system refused the handling of Ctrl-C and kill (signals): {error}. Nothing was run. \
+             Report this message."
         )
     });
     let requests = Rc::new(agreed(universe, exit::BUG, requests)?);

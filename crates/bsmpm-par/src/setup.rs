@@ -176,8 +176,8 @@ pub fn warnings(case: &Case, ranks: usize) -> Vec<String> {
         smoothing(case, bsmpm_scene::model::nominal_steps(case)).filter(|(length, size)| length > &(SMALL * size))
     {
         warnings.push(format!(
-            "W0729: `modified-f-bar` smooths strains over about {length:.2} m, all steps together (limit: {:.2} m). \
-             Results depend on the number of steps. Use `consistent-f-bar`.",
+            "W0729: `modified-f-bar` averages strains over a length that reaches about {length:.2} m over all steps \
+             (limit: {:.2} m). Results depend on the number of steps. Use `consistent-f-bar`.",
             SMALL * size
         ));
     }

@@ -26,8 +26,8 @@ impl fmt::Display for LaunchFailure {
             ),
             Self::Apart(processes) => write!(
                 f,
-                "E0773: mpirun started {processes} separate processes, not one parallel run: mpirun belongs to \
-                 another MPI library. Nothing was run. Use the mpirun of this program's MPI library."
+                "E0773: mpirun started {processes} separate processes, not one parallel run, because this program \
+                 uses another MPI library. Nothing was run. Use the mpirun of this program's MPI library."
             ),
         }
     }

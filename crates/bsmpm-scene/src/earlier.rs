@@ -39,8 +39,8 @@ fn in_table(written: &mut DocumentTable, table: &'static Table, path: &str, repo
         {
             if is_given(key.name) {
                 let message = format!(
-                    "E0016: this key is the earlier name of `{now}`, and the case gives both. Delete this key or \
-                     `{now}`.",
+                    "E0016: this key is the earlier name of the key `{now}`, and the case gives both keys. Delete \
+                     this key, or delete `{now}`.",
                     now = key.name
                 );
                 report.error(entry.origin, &path, message);

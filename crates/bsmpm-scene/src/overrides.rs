@@ -30,7 +30,7 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
                 origin,
                 key.trim(),
                 "E0025: the text before `=` is not the path of a key. Write the names of the tables and the key with \
-                 points between them, such as body.0.points_per_cell.",
+                 dots between them, such as body.0.points_per_cell.",
             );
             continue;
         }
@@ -145,15 +145,15 @@ impl<'a> Setting<'a> {
                 }
                 let index: usize = part.parse().map_err(|_| {
                     format!(
-                        "E0026: `{}` is not the number of an item of the list. Write the number of one of the \
-                         {length} items, counted from 0.",
+                        "E0026: `{}` is not a number, but a list needs the number of an item here. Write the number \
+                         of one of the {length} items, counted from 0.",
                         shortened(part)
                     )
                 })?;
                 if index > length {
                     return Err(format!(
-                        "E0026: the list has no item {index}, because it has {length} items, counted from 0. Write \
-                         {length} to add an item."
+                        "E0026: the list has no item {index}. It has {length} items, and the first one is item 0. \
+                         Write {length} to add an item."
                     ));
                 }
                 if index == length {
@@ -167,8 +167,8 @@ impl<'a> Setting<'a> {
                 self.in_value(&mut items[index], schema, depth + 1)
             }
             _ => Err(format!(
-                "E0026: `{}` cannot be set, because the key before it in the path has the value {shown} and is not a \
-                 table. Correct the path.",
+                "E0026: in this path `{}` follows a key that has the value {shown} and is not a table, so it has no \
+                 keys of its own. Correct the path.",
                 shortened(part)
             )),
         }

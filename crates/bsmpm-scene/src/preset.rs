@@ -156,8 +156,8 @@ fn fill_accuracy(
     // Its errors are reported when the filled document is read.
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     if record.word("geometry") == Some(Geometry::Solid) {
-        let message = "E0226: presets are not available in 3-D. Give grid.cell, points_per_cell, analysis.steps and \
-                       the tolerances of [solver].";
+        let message = "E0226: the presets of `accuracy` are not available in 3-D. Delete `accuracy`, and give \
+             grid.cell, points_per_cell, analysis.steps and the tolerances of [solver].";
         report.error(choice.origin, ACCURACY, message);
         return false;
     }
@@ -191,8 +191,8 @@ fn fill_accuracy(
     let filled = filling.filled;
     if filled && record.records("rigid").iter().any(|rigid| rigid.gives("free")) {
         report.warn(format!(
-            "W0201: {ACCURACY}: the preset cannot know how fast free rigid bodies will move, so its time steps may be \
-             too long. Check that the rigid bodies move less than a cell in a step."
+            "W0201: {ACCURACY}: the preset does not know the speed of free rigid bodies, so its steps may be too \
+             long. Set analysis.steps so that these bodies move less than a cell in a step."
         ));
     }
     // With a purpose every key may be given because the purpose has filled it in.

@@ -127,7 +127,11 @@ impl Context {
                 (Some(entry), Presence::Later) => report.error(entry.origin, &path, NOT_YET),
                 (Some(entry), Presence::Retired) => {
                     if self.datum(&key.kind, &entry.node, &path, report).is_some() {
-                        report.warn(format!("W0001: {path}: this key has no effect any more: {}. Delete it.", key.doc));
+                        report.warn(format!(
+                            "W0001: {path}: this key has no effect any more, because {}. Delete the \
+                             key.",
+                            key.doc
+                        ));
                     }
                 }
                 (Some(entry), _) => {
@@ -278,7 +282,7 @@ fn missing(key: &Key) -> String {
     let one_of =
         |group: &Group| group.keys.iter().take(2).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or ");
     let names: Vec<String> = required.map(|key| format!("`{}`", key.name)).chain(groups.map(one_of)).collect();
-    format!("E0052: the table {} is missing. Add one, with {}.", table.header, names.join(" and "))
+    format!("E0052: the table {} is missing. Add this table with the keys {}.", table.header, names.join(" and "))
 }
 
 impl Record {

@@ -114,7 +114,11 @@ impl Mender<'_, '_> {
         if written.entries.is_empty() || !written.entries.iter().all(is_key) {
             return;
         }
-        let message = format!("E0051: this table needs a name: {}. Add the name, such as [{path}.soil].", table.header);
+        let message = format!(
+            "E0051: this table has no name, but its heading must have the form {}. Add the name, \
+             such as [{path}.soil].",
+            table.header
+        );
         self.report.error(node.origin, path, message);
         let only = Node { origin: node.origin, value: Value::Table(std::mem::take(written)) };
         written.entries.push(DocumentEntry { key: "soil".to_owned(), origin: node.origin, node: only });

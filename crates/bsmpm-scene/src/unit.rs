@@ -252,7 +252,8 @@ pub(crate) fn parse_per_metre(text: &str, of: Dimension) -> Result<f64, String> 
     let units: Vec<String> = of.units().map(|unit| format!("{unit}/m")).collect();
     let wrong = || {
         format!(
-            "E0021: \"{}\" has no unit per metre of depth. Use one of {}.",
+            "E0021: the unit of \"{}\" must be a unit per metre, because the value is a change with height. Use one \
+             of {}.",
             crate::report::shortened(text),
             units.join(", ")
         )
@@ -437,7 +438,7 @@ mod tests {
             assert_eq!(parse_per_metre(text, of), Ok(value), "{text}");
         }
         for (text, says) in [
-            ("2 kPa", "no unit per metre of depth. Use one of Pa/m, kPa/m"),
+            ("2 kPa", "must be a unit per metre, because the value is a change with height. Use one of Pa/m, kPa/m"),
             ("2 m/m", "expected a stress"),
             ("/m", "E0022"),
         ] {

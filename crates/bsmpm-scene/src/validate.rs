@@ -267,7 +267,8 @@ fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Repor
     if let Some(key) = keys.next() {
         if kind != AnalysisType::Consolidation {
             let message = format!(
-                "E0258: the steps of a {kind} analysis cannot grow. Delete this key, or use type = \"consolidation\"."
+                "E0258: the time steps of a {kind} analysis cannot become longer during the analysis. Delete this \
+                 key, or use type = \"consolidation\"."
             );
             analysis.error(key, message, report);
             return None;
@@ -275,8 +276,8 @@ fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Repor
         if analysis.gives("steps") {
             analysis.error(
                 key,
-                "E0259: `steps` divides the analysis into equal steps, which cannot grow. Give `dt` in place of \
-                 `steps`.",
+                "E0259: `steps` divides the analysis into equal steps, but this key is for steps that become longer. \
+                 Delete this key, or give `dt` (the first step) in place of `steps`.",
                 report,
             );
             return None;

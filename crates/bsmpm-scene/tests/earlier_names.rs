@@ -161,7 +161,7 @@ fn overrides_with_earlier_names_set_the_keys_of_now() {
 fn an_earlier_name_beside_that_of_now_is_refused() {
     let both = now().replace("friction_angle = 30\ndilation", "friction_angle = 30\nfriction = 30\ndilation");
     let message = read(&both, &[]).unwrap_err();
-    assert!(message.contains("is the earlier name of `friction_angle`, and the case gives both"), "{message}");
+    assert!(message.contains("is the earlier name of the key `friction_angle`, and the case gives both"), "{message}");
     assert!(!message.contains("E0011"), "{message}");
 }
 

@@ -72,8 +72,8 @@ pub enum Error {
     },
     /// A trial of a search failed because a rigid body slipped, which says nothing of the ground.
     #[error(
-        "E0826: rigid body `{name}`, which only friction supports, slips in the trial with the {value} {trial}. The \
-         soil does not fail. Remove this direction from `free`, or use a [[traction]] instead."
+        "E0826: only friction supports rigid body `{name}`. It slips in the trial run with the {value} {trial}. The \
+         soil does not fail. Remove this direction from `free`, or use a [[traction]]."
     )]
     LooseBody {
         /// What trials differ by.
@@ -102,7 +102,10 @@ pub enum Error {
         table: PathBuf,
     },
     /// A run that is needed ended for a reason of its own.
-    #[error("E0802: a run whose result is needed failed with exit code {code} ({what}): {reason}")]
+    #[error(
+        "E0802: a run of this command failed with exit code {code} ({what}), so the result cannot be computed: \
+         {reason}"
+    )]
     Run {
         /// Which one.
         what: String,

@@ -105,8 +105,9 @@ pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Res
     let mut report = EstimateReport::of(&arguments.case, &case, ranks, (speed, &found));
     if let Some(actual) = actual {
         if actual.text != case.text {
-            let warning = "W0854: the run of --against has another case or other --set options, so the difference \
-                           shows more than the error of the estimate. Use the case and the --set options of that run.";
+            let warning = "W0854: the run given by --against has another case or other --set options, so the \
+                 difference includes more than the error of the estimate. Use the case and the --set options of that \
+                 run.";
             announce(&headed(warning, "warning"));
         }
         report.compare(&actual);

@@ -91,8 +91,8 @@ pub fn run(arguments: &LimitLoadArguments, mut say: impl FnMut(&str)) -> Result<
     let without_cohesion = outcomes.get(grids);
     if let Some(outcome) = without_cohesion.filter(|outcome| outcome.state != RunState::Done) {
         let warning = format!(
-            "W0853: the check run with the small cohesions set to zero failed ({}), so their share of the limit load \
-             is unknown. Set these cohesions to 0 in a copy of the case, and find out why it fails.",
+            "W0853: the run without the small cohesions failed ({}), so the part of the limit load that they carry is \
+             unknown. Set these cohesions to 0 in a copy of the case, and find out why it fails.",
             outcome.reason
         );
         say(&headed(&warning, "warning"));

@@ -85,7 +85,10 @@ fn doubt(case: &Case, ranks: u64) -> Option<String> {
     let useful = case.estimate(count).useful_ranks;
     if case.parts(count, [1; 2]).is_none() {
         let reason = case.too_many(count);
-        return Some(format!("W0855: the job would end at once, with exit code {CASE}: {}", without_code(&reason)));
+        return Some(format!(
+            "W0855: the job would end at once with exit code {CASE}. Reason: {}",
+            without_code(&reason)
+        ));
     }
     (ranks > useful).then(|| {
         format!(

@@ -78,8 +78,8 @@ pub enum StepError {
     },
     /// All material would have left the grid through its outlets.
     #[error(
-        "E0742: no material would be left: the last {count} material point(s) leave the grid through outflow \
-         boundaries in this step."
+        "E0742: the last {count} material point(s) leave the grid through outflow boundaries in this step, so no \
+         material is left."
     )]
     Emptied {
         /// Number of points over all ranks.
@@ -87,8 +87,8 @@ pub enum StepError {
     },
     /// A load has no material at some of its points any more.
     #[error(
-        "E0743: load number {load} (counted from 0: tractions, then point loads) cannot act, because {points} of \
-        its points have no soil."
+        "E0743: load number {load} (counted from 0, first tractions, then point loads) cannot act, because {points} \
+         of its points lie outside the soil."
     )]
     Unloaded {
         /// Number of the load, tractions first.
@@ -109,8 +109,8 @@ pub enum StepError {
     },
     /// A drain or inflow is on material through which no water flows.
     #[error(
-        "E0745: no water can flow at {points} point(s) of drain number {drain} (counted from 0: drains, then inflows): the \
-         material there is impermeable. Move the drain, or set `permeability` of that material."
+        "E0745: {points} point(s) of drain number {drain} (counted from 0, first drains, then inflows) lie on \
+         impermeable soil, so no water flows. Move the drain, or set `permeability` of the soil."
     )]
     Undrained {
         /// Number of the drain; the inflows behind the drains.
@@ -177,8 +177,8 @@ pub enum StepError {
     },
     /// Rounds towards equilibrium at the start came to no end.
     #[error(
-        "E0750: no initial equilibrium was found in {rounds} rounds of iteration: {force:.1e} of the largest \
-        force is unbalanced."
+        "E0750: no initial equilibrium was found in {rounds} rounds of iteration. The unbalanced force is still \
+         {force:.1e} of the largest force."
     )]
     Unbalanced {
         /// Rounds made.
@@ -205,8 +205,8 @@ pub enum StepError {
     },
     /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
     #[error(
-        "E0753: energy was created: kinetic, elastic and dissipated energy together exceed the supplied {given:.3e} J \
-         by {:.1} % of the peak energy (limit: {:.0} %).", 100.0 * growth, 100.0 * slack
+        "E0753: kinetic, elastic and dissipated energy together exceed the initial energy plus external work \
+         ({given:.3e} J) by {:.1} % of the peak energy (limit: {:.0} %), so energy was created.", 100.0 * growth, 100.0 * slack
     )]
     EnergyMade {
         /// Largest excess over the largest energy.
@@ -217,13 +217,16 @@ pub enum StepError {
         slack: f64,
     },
     /// The step was given up on request, see [`Halo::is_interrupted`](crate::parallel::Halo::is_interrupted).
-    #[error("E0754: the step was interrupted by Ctrl-C, or by a request of the system to stop.")]
+    #[error("E0754: the step was interrupted by Ctrl-C, or by another signal to stop (TERM, USR1).")]
     Interrupted,
     /// Another rank has the error; this rank's part was good.
-    #[error("E0755: the step failed on another rank of this run, whose message names the cause.")]
+    #[error(
+        "E0755: the step failed on another rank (MPI process) of this run. The message of that rank names the \
+         cause."
+    )]
     OtherRank,
     /// The linear system could not be solved.
-    #[error("E0756: the linear system was not solved: {0}.")]
+    #[error("E0756: the system of linear equations was not solved: {0}.")]
     Solve(#[from] SolveError),
     /// The constitution refused a trial state when the step was committed.
     #[error("E0757: the stress of material point {id} cannot be computed: {source}.")]

@@ -30,16 +30,16 @@ pub(super) fn of(name: &str, case: &Case, value: f64) -> String {
 const NOISE_ABOUT_AVERAGE: &str = "I0001: the pressures of neighbouring material points scatter by {value} of \
     their mean ({range}). \
     Do not use stresses of single points. {remedy}";
-const NOISE_ABOUT_PLANE: &str = "I0002: the pressures of neighbouring material points scatter by {value} of their mean about a linear trend in space ({range}). Do not use stresses of single points. {remedy}";
+const NOISE_ABOUT_PLANE: &str = "I0002: the pressures of neighbouring material points scatter by {value} of their \
+    mean about a linear trend in space ({range}). Do not use stresses of single points. {remedy}";
 const ENERGY_MADE: &str = "I0012: numerical dissipation is {value} of the peak energy ({range}). The algorithm \
     adds energy to the motion. Reduce `analysis.dt`.";
 const GROWTH: &str = "I0013: the algorithm has created {value} of the peak energy ({range}). The computed motion is \
     too fast. {remedy}";
-const WALL: &str = "I0019: soil next to fixed boundaries has an excess of {value} of the kinetic energy \
-    ({range}). It moves too fast and slides too far there. {remedy}";
-const INTERFACE: &str = "I0021: a material interface has moved {value} from its grid line ({range}). Stresses \
-    within three cells \
-    of it are wrong. {remedy}";
+const WALL: &str = "I0019: soil next to fixed boundaries has too much kinetic energy, by {value} of the total \
+     ({range}). This soil slides too far. {remedy}";
+const INTERFACE: &str = "I0021: an interface of two materials has moved {value} from the grid line where it was at \
+     the start ({range}). Stresses within three cells of the interface are wrong. {remedy}";
 
 /// Cells  Distance of an interface from its grid line from which on no reasonable cell is large enough.
 const FAR: f64 = 1.0;
@@ -127,8 +127,7 @@ fn constant(name: &str, case: &Case) -> &'static str {
         }
         "quadrature-defect-largest" => {
             "I0004: in a full cell the volume of the material points differs by {value} from that of the cell \
-             ({range}). Its stress \
-             is wrong by about as much. Increase `body.points_per_cell`."
+             ({range}). Stress in this cell is wrong by about as much. Increase `body.points_per_cell`."
         }
         "points-per-cell" => {
             "I0005: full cells have {value} material points on average ({range}). The integration is too coarse, \
@@ -168,30 +167,28 @@ fn constant(name: &str, case: &Case) -> &'static str {
              converged well enough. Reduce `solver.tolerance`."
         }
         "energy-loss" if !is_dynamic => {
-            "I0012: energy lost between the steps is {value} of the peak energy ({range}). The steps are too long. \
-             Increase `analysis.steps`."
+            "I0012: the algorithm removed {value} of the peak energy between the steps ({range}). The steps are too \
+             long. Increase `analysis.steps`."
         }
         "energy-loss" => {
             "I0012: numerical dissipation is {value} of the peak energy ({range}). The motion is damped too strongly. \
              Reduce `analysis.dt`."
         }
         "smoothing-length" => {
-            "I0014: strains were smoothed over a length of {value} ({range}). Smaller details of the stress are \
-             lost. Use \
-             smaller cells, or set `stabilisation.method = \"consistent-f-bar\"`."
+            "I0014: strains were smoothed over a length of {value} ({range}). Details of the stress below this length \
+             are lost. Use smaller cells, or set `stabilisation.method = \"consistent-f-bar\"`."
         }
         "slip" => {
-            "I0015: soil slips along a rigid footing or segment by {value} of its motion ({range}). The computed \
-             force is too \
-             small. Increase `analysis.steps`, or use smaller cells there."
+            "I0015: slip of the soil along a rigid footing or segment is {value} of the motion of the latter \
+             ({range}). The force is too small. Increase `analysis.steps`, or use smaller cells there."
         }
         "support-pull" => {
-            "I0016: a boundary pulls on the soil with {value} of the largest reaction ({range}). This is right at a plane of symmetry \
-             only. Set any other boundary to `\"contact\"` in `[boundary]`."
+            "I0016: tension at a boundary is {value} of the largest reaction ({range}). This is right at a plane of \
+             symmetry only. If the soil should separate there, set `\"contact\"` in `[boundary]`."
         }
         "front-setback" => {
-            "I0017: the measured front moved back by {value} ({range}). A tip thinner than half a cell is not seen, so the front is not \
-             the run-out. Use smaller cells, or a history with `quantity = \"runout\"`."
+            "I0017: the measured front moved back by {value} ({range}). A tip thinner than half a cell is ignored, so \
+             it is not the run-out. Use smaller cells, or a history with `quantity = \"runout\"`."
         }
         "step-advance" => {
             "I0018: a material point moved by {value} in one step ({range}). The positions of fronts and contacts \
@@ -209,9 +206,8 @@ fn constant(name: &str, case: &Case) -> &'static str {
              Increase `analysis.steps`."
         }
         "permeability-shift" => {
-            "I0022: an interface of permeabilities has moved {value} from its grid line ({range}). Flow there is \
-             wrong by up to a \
-             factor of 2. Use larger cells, so that it stays within half a cell."
+            "I0022: an interface of two permeabilities has moved {value} from its grid line ({range}). Flow is wrong \
+             by up to a factor of 2. Use larger cells, so that it moves less in units of cells."
         }
         "cells-across-footing" => {
             "I0023: the footing is {value} cells wide ({range}). The failure load is more than 8 % too large. Use \
@@ -229,22 +225,20 @@ fn constant(name: &str, case: &Case) -> &'static str {
              or use smaller cells where it acts."
         }
         "background-load-share" if case.solver.extended_splines == ExtendedSplines::Off => {
-            "I0026: the artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
-             Soil there moves slowly by numerical error. Remove `solver.extension`."
+            "I0026: artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
+             Displacements there grow in every step, which is wrong. Remove `solver.extension`."
         }
         "background-load-share" => {
-            "I0026: the artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
-             Soil there moves slowly by numerical error. Increase `body.points_per_cell`."
+            "I0026: artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
+             Displacements there grow in every step, which is wrong. Increase `body.points_per_cell`."
         }
         "stiffness-loss" => {
-            "I0027: {which}: its elastic stiffness is {value} times the actual one ({range}). Displacements from \
-             then on are not \
-             reliable. Reduce the load, or use `bsmpm fos`."
+            "I0027: {which}. The elastic stiffness of the soil is {value} times its actual stiffness ({range}). \
+             Displacements after failure are not reliable. Reduce the load, or use `bsmpm fos`."
         }
         "background-work" => {
-            "I0028: the artificial stiffness of nearly empty cells takes {value} of the internal work ({range}). \
-             Forces are too \
-             large by about as much. Reduce `solver.background`."
+            "I0028: the artificial stiffness of nearly empty cells does {value} of the internal work of the soil \
+             ({range}). Forces are too large by about as much. Reduce `solver.background`."
         }
         _ => "",
     }

@@ -147,8 +147,8 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
         let foreign = || {
             Refusal::new(
                 exit::CHECKPOINT,
-                "E0719: the case has other histories than the run that wrote the checkpoint. The run cannot be \
-                 continued. Restore the histories of the case, or start again with `--force`.",
+                "E0719: the histories of the case differ from those of the run that wrote the checkpoint. The run \
+                 cannot be continued. Restore the histories of the case, or start again with `--force`.",
             )
         };
         return Ok((simulation, recorder.ok_or_else(foreign)?));

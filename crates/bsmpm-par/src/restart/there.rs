@@ -175,8 +175,8 @@ pub(super) fn new_defaults(past: &Manifest, case: &Case) -> Option<String> {
     let solver = &case.solver;
     let goes_on_with = solver.extended_splines == ExtendedSplines::Linear || solver.quadrature == Quadrature::Fitted;
     (began_without && goes_on_with).then(|| {
-        "W0733: the run began with an earlier version, whose default methods differ. Displacements at the surface may \
-         jump at this restart. For consistent results, start again with `--force`."
+        "W0733: the run began with an earlier version of the program, whose default methods differ. Displacements at \
+         the surface may jump at this restart. For consistent results, start again with `--force`."
             .into()
     })
 }

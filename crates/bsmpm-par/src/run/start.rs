@@ -28,7 +28,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if machine::has_reference_blas() {
             self.warn(
                 "W0714: the linear algebra library (BLAS) is the slow reference version. Runs take several times as \
-                 long. Install an optimised BLAS, on Debian libopenblas0-serial."
+                 long. Install an optimised BLAS (on Debian the package libopenblas0-serial)."
                     .into(),
             );
         }

@@ -147,8 +147,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
             if self.warned_strips.insert(of_strips + points.len() + number) {
                 self.warn(format!(
-                    "W0709: `{name}`: the soil parted by {:.1} cells at t = {t}, and its new surface does not drain. To see the effect, compare a \
-                     run without water flow (`drainage = \"hydrostatic\"`).",
+                    "W0709: `{name}`: the soil separated by {:.1} cells at t = {t}. The new surface does not drain, \
+                     which delays consolidation. For the other bound, run `drainage = \"hydrostatic\"`.",
                     water.torn[number]
                 ));
             }

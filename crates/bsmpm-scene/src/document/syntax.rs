@@ -134,7 +134,7 @@ fn duplicate(source: &Source<'_>, span: &std::ops::Range<usize>, line: &str) -> 
             )
         }
         Some((number, first)) => format!(
-            "E0046: `{name}` has {} here, but {} in line {number}. Write [[{name}]] in both.",
+            "E0046: the table `{name}` has {} here, but {} in line {number}. Write [[{name}]] in both lines.",
             pairs(header.is_list),
             pairs(first.is_list)
         ),
@@ -310,7 +310,7 @@ mod tests {
         let table = only("[m.s]\na = 1\n[m.s]\nb = 2\n");
         assert!(table.contains("the table [m.s] is given twice, here and in line 1."), "{table}");
         let list = only("[body]\na=1\n[[body]]\na=2\n[[body]]\na=3\n");
-        assert!(list.contains("Write [[body]] in both."), "{list}");
+        assert!(list.contains("Write [[body]] in both lines."), "{list}");
     }
 
     #[test]

@@ -15,7 +15,7 @@ const WRONG_ROWS: usize = 3;
 
 /// Of a file that `--set` names: a case is whole before it is overridden.
 pub(crate) const UNREAD: &str = "E0027: --set does not read data files. Name the data file in the case file, or write \
-                                 the rows of numbers themselves.";
+     the rows of numbers after the `=` of --set.";
 
 /// Longest name of a material, column or check.
 const LONGEST_NAME: usize = 64;
@@ -138,8 +138,8 @@ impl ValueReader<'_, '_> {
         let message = match node.origin {
             Origin::Override(_) => UNREAD,
             Origin::Text(_) | Origin::Nowhere => {
-                "E0027: this does not name a data file: in braces only the keys `file` (required) and `along` are allowed. \
-                 Write { file = \"rows.csv\" }."
+                "E0027: the braces must name a data file. The key `file` is required, `along` is optional, and other \
+                 keys are not allowed. Write { file = \"rows.csv\" }."
             }
         };
         self.fail(node, message)
@@ -263,8 +263,8 @@ impl ValueReader<'_, '_> {
             if wrong == WRONG_ROWS && read.len() < items.len() {
                 let more = items.len() - read.len();
                 let message = format!(
-                    "E0009: {more} more rows were not checked, because {WRONG_ROWS} rows in succession are wrong. \
-                     Correct these rows first."
+                    "E0009: the remaining {more} rows were not checked, because the {WRONG_ROWS} rows before them \
+                     have errors. Correct these rows first."
                 );
                 return self.fail(node, message);
             }

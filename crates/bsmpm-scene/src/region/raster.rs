@@ -1,5 +1,6 @@
 //! Terrain: what lies between two rasters of heights, bilinear between their posts.
 
+use crate::report::brief;
 use bsmpm::boundary::rigid::Terrain;
 
 /// Parts of the spacing by which posts may miss their places: rounding of what wrote them.
@@ -52,11 +53,11 @@ impl Raster {
         if count[0].saturating_mul(count[1]) != rows.len() {
             let [x, y] = count;
             return Err(format!(
-                "E0032: the {} rows are not a regular grid of points: spacings of {} m along x and {} m along y need \
-                 {x} x {y} rows. Interpolate the heights to a regular grid.",
+                "E0032: the {} rows do not form a regular grid of points. Spacings of {} m along x and {} m along y \
+                 need {x} x {y} rows. Interpolate the heights to a regular grid.",
                 rows.len(),
-                spacing[0],
-                spacing[1]
+                brief(spacing[0]),
+                brief(spacing[1])
             ));
         }
         let spacing = [0, 1].map(|axis| (ends[axis][1] - ends[axis][0]) / (count[axis] - 1) as f64);
@@ -199,7 +200,7 @@ mod tests {
         says(&posts, 2.0, "is below the base (2 m)");
         says(&posts, 1.0, "the body has no volume");
         posts[7][0] += 0.1;
-        says(&posts, 0.0, "not a regular grid");
+        says(&posts, 0.0, "do not form a regular grid of points");
         let mut twice = rows(|_, _| 1.0);
         twice[3] = twice[2];
         says(&twice, 0.0, "is given twice");

@@ -89,8 +89,8 @@ const ANSWERS: &[Answer] = &[
             "anchor", "anchors", "beam", "beams", "plate", "plates", "pile", "piles", "geogrid", "geogrids", "strut",
             "wall", "walls",
         ],
-        "E0012: structural elements such as beams, plates and anchors are not available. Use an elastic [[body]] with \
-         the same bending stiffness, or a [[rigid]] body. Nothing replaces anchors and geogrids.",
+        "E0012: structural elements (beams, plates, anchors) are not available. Use an elastic [[body]] with the same \
+         bending stiffness, or a [[rigid]] body. Anchors and geogrids have no substitute.",
     ),
     top(&["bodies"], "Bodies are tables `[[body]]`, one for each."),
     top(&["materials"], "Materials are tables `[material.NAME]`, one for each."),

@@ -98,7 +98,8 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
     }
     if !corners.is_empty() || whole.len() == 1 {
         return Err(bad(
-            "E0031: the STL file ends within a triangle, or has no triangle. Export the file again.".to_owned()
+            "E0031: the STL file has no triangle, or its last triangle is incomplete. Export the file again."
+                .to_owned(),
         ));
     }
     whole.push(']');
@@ -132,6 +133,6 @@ mod tests {
         };
         refuses(&text.replace("vertex 0 0 0", "vertex 0 x 0"), "the vertex in line 4 ");
         refuses(&text.replace("vertex 0 0 0", ""), "the facet that ends in line 8 ");
-        refuses(text.split("endloop").next().unwrap(), "ends within a triangle");
+        refuses(text.split("endloop").next().unwrap(), "its last triangle is incomplete");
     }
 }

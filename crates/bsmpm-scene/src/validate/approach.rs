@@ -32,8 +32,8 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
             let Some(time) = meeting(one, other, cell, case) else { continue };
             let reach = case.grid.order as f64;
             report.warn(format!(
-                "W0229: body.{} and body.{} come closer than a cell at about t = {time:.3} s. They push on each other \
-                 from a distance of {:.1} cells ({} m). Use smaller cells, or [[rigid]] for one body.",
+                "W0229: body.{} and body.{} come closer than a cell at t = {time:.3} s. From {:.1} cells ({} m) on \
+                 they push on each other. Use smaller cells, or [[rigid]] for one body.",
                 one.bodies[0],
                 other.bodies[0],
                 reach - 0.5,

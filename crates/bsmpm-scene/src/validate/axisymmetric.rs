@@ -42,7 +42,7 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
     {
         let key = if grid.gives("knots") { "knots" } else { "lower" };
         let message = "E0238: the grid of an axisymmetric case must begin at x = 0, because x is the radius. Set the \
-                       lower end of the grid along x to 0; empty cells cost nothing.";
+             lower end of the grid along x to 0. The body may begin at x > 0.";
         grid.error(key, message, report);
     }
     let tables = std::iter::once(record).chain(record.records("stage")).filter_map(|table| table.record("boundary"));
@@ -54,8 +54,8 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
                     boundary.error(word, "E0239: this face is the axis of symmetry. Set it to \"roller\".", report);
                 }
             } else if found == Some(Support::FreeField) {
-                let message = "E0240: a free field shakes sideways, which is not axisymmetric. Use \"absorbing\", or \
-                               \"roller\" at a larger distance.";
+                let message = "E0240: a free field follows horizontal shaking in one direction, which is not \
+                     axisymmetric. Use \"absorbing\", or \"roller\" at a larger distance from the axis.";
                 boundary.error(word, message, report);
             }
         }

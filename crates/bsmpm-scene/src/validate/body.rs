@@ -71,8 +71,8 @@ fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option
                  the axis."
             }
             _ => {
-                "E0207: a body in a 2-D case rotates about the normal of the plane. Delete `axis`, or use geometry = \
-                 \"3d\"."
+                "E0207: a body in a 2-D case always rotates about the normal of the plane, so an axis of rotation is \
+                 not allowed. Delete `axis`, or use geometry = \"3d\"."
             }
         };
         spin.error("axis", message, report);
@@ -151,7 +151,7 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
     if let Some((axis, part)) = bodies.iter().filter_map(thin).min_by(|a, b| a.1.total_cmp(&b.1)) {
         report.warn(format!(
             "W0212: {}: the body is only {part:.2} cells thick along {}, less than the spacing of material points. \
-             Bending and strains of the body and beside it are unreliable. Use smaller cells at the body.",
+             Bending and strains there are unreliable. Use smaller cells at the body.",
             listed(&paths(&|body| thin(body).is_some())),
             ["x", "y", "z"][axis]
         ));
@@ -216,8 +216,8 @@ pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
     if let Some((i, j)) = pairs.find(both) {
         let [lower, upper] = common_box(&bodies[i], &bodies[j], grid.dims());
         report.warn(format!(
-            "W0213: body.{i} and body.{j} overlap between {lower:.3?} and {upper:.3?} m, so this soil is counted twice. \
-             Correct the corners of one body, or cut the shape of the other out of it with `subtract`."
+            "W0213: body.{i} and body.{j} overlap between {lower:.3?} and {upper:.3?} m, so this soil is counted \
+             twice. Correct the corners of one body, or `subtract` its shape from the other body."
         ));
     }
 }

@@ -63,8 +63,8 @@ fn read(
     let graded = materials[material].material.is_graded();
     if graded && !record.gives("height") {
         let message = format!(
-            "E0692: the parameters of material.{} vary with height, so the test must give the height of its point. \
-             Add `height`.",
+            "E0692: the parameters of material.{} vary with height, but the test does not give the height of its \
+             material point. Add `height`.",
             materials[material].name
         );
         report.error(record.origin, &record.path_of("height"), message);

@@ -297,8 +297,8 @@ impl Ground<'_> {
                      inflow a `name`, and list the name in `activate` of the stage that adds the body."
                 ),
                 None => format!(
-                    "E0401: no soil lies at {at:.3?} m, nor up to half a spacing of material points from there. Move \
-                     the drain or inflow to the surface of the soil."
+                    "E0401: no soil lies at {at:.3?} m or within half a spacing of material points of it, so no water \
+                     can pass there. Move the drain or inflow to the surface of the soil."
                 ),
             };
             record.consequence(key, message, PERMEABLE, report);
@@ -329,8 +329,8 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
         DrainSite::Face(face(record, ground, report)?)
     } else if record.gives("surface") {
         if !record.flag("surface")? {
-            let message = "E0514: `surface = false` gives the drain no place. Set `surface = true`, or replace \
-                           `surface` by `face`, by `circle`, or by `from` and `to`.";
+            let message = "E0514: with `surface = false` the drain has no location. Set `surface = true`, or replace \
+                 `surface` by `face`, by `circle`, or by `from` and `to`.";
             record.error("surface", message, report);
             return None;
         }
@@ -373,8 +373,8 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
             record.error("seepage", message, report);
         }
         if record.gives("face") {
-            let message = "E0515: a face of the grid cannot be a seepage face, because water could also enter \
-                           through it. Replace `face` by `from` and `to` on the surface of the body.";
+            let message = "E0515: at a seepage face water can only leave the soil, but through a face of the grid \
+                 water could also enter. Replace `face` by `from` and `to` on the surface of the body.";
             record.error("seepage", message, report);
         }
         return Some(Given::Seepage);
@@ -422,8 +422,8 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     let shift = |at: [f64; 2]| [0, 1].map(|axis| lower[axis] + at[axis]);
     let pieces: Vec<[[f64; 2]; 2]> = pieces.into_iter().map(|piece| piece.map(shift)).collect();
     if pieces.is_empty() {
-        let message = "E0517: no soil with pore-water flow has a free surface: all its edges lie at restrained \
-                       boundaries or other bodies. Replace `surface` by `face`, or by `from` and `to`.";
+        let message = "E0517: `surface = true` needs a free surface, but the soil with pore-water flow has only edges \
+             at restrained boundaries or other bodies. Replace `surface` by `face`, or by `from` and `to`.";
         record.consequence("surface", message, PERMEABLE, report);
         return None;
     }

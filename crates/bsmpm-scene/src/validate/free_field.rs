@@ -22,8 +22,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         if case.shaking.iter().all(|(_, ground)| *ground == [0.0; 3]) {
             refuse(
-                "E0245: the case has no [shaking], or a zero one, so nothing moves the free field. Add [shaking], or \
-                 use \"absorbing\"."
+                "E0245: the case has no [shaking], or its acceleration is zero, so the free field does not move. Add \
+                 [shaking] with an acceleration, or use \"absorbing\"."
                     .into(),
             );
         }
@@ -36,7 +36,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         if !reached(case, axis, upper == 1) {
             refuse(
-                "E0247: no body reaches this face, so there is no ground for a free field. Extend a body to it.".into(),
+                "E0247: no body reaches this face, so the free field has no soil. Extend a body to this face.".into(),
             );
         }
         let (lower, higher) = column(case, upper == 1);
@@ -44,15 +44,15 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         let moves = |body: &Body| body.velocity.is_some_and(|v| v != [0.0; 3]) || body.spin.is_some();
         if case.bodies.iter().any(|body| in_column(body) && moves(body)) {
             refuse(
-                "E0248: a body in the outermost cells at this face, which represent the free field, has an initial \
-                 velocity or spin. Delete the velocity or spin."
+                "E0248: a body at this face has an initial velocity or spin, but the outermost cells here represent \
+                 the free field, which moves with [shaking] alone. Delete the velocity or spin."
                     .into(),
             );
         }
         if let Some(what) = acts_between(case, (lower, higher)) {
             refuse(format!(
-                "E0248: {what} acts on the outermost cells at this face, which represent the free field. Keep {what} \
-                 more than a cell away from this face at all times."
+                "E0248: {what} acts on the outermost cells at this face. They represent the free field, so only \
+                 [shaking] may act on them. Keep {what} more than a cell away from this face at all times."
             ));
         }
     }

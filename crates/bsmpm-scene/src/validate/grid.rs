@@ -65,7 +65,7 @@ fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()
             let key = if grid.gives("knots") { "knots" } else { "cell" };
             let message = format!(
                 "E0205: the shortest cell along {name} is {cell:e} m long, but must be at least {least:e} m. Correct \
-                 the cell size or the breakpoints."
+                 `grid.cell`, or the ends of the cells in [grid.knots]."
             );
             grid.error(key, message, report);
             return None;
@@ -84,7 +84,7 @@ fn graded(
     let knots = grid.record("knots")?;
     if knots.gives("z") != (dims == 3) {
         let message = match dims {
-            3 => "E0206: a 3-D grid needs breakpoints (the ends of the cells) along z, too. Add knots.z.",
+            3 => "E0206: a 3-D grid needs the ends of its cells along z in [grid.knots], too. Add knots.z.",
             _ => "E0207: a 2-D grid has no z axis. Delete knots.z, or use geometry = \"3d\".",
         };
         knots.error("z", message, report);
@@ -95,16 +95,16 @@ fn graded(
         let copies: Vec<&[f64]> = knots.numbers(name)?.chunk_by(|a, b| a == b).collect();
         let breakpoints: Vec<f64> = copies.iter().map(|copies| copies[0]).collect();
         if breakpoints.len() < 2 || breakpoints.windows(2).any(|pair| pair[1] <= pair[0]) {
-            let message = "E0208: the breakpoints (the ends of the cells) are not in increasing order, or fewer than \
-                           two differ. Sort the breakpoints, and add missing ones.";
+            let message = "E0208: the ends of the cells in [grid.knots] are not in increasing order, or fewer than \
+                 two of them differ. Sort the numbers, and add missing ones.";
             knots.error(name, message, report);
             return None;
         }
         let (last, most) = (copies.len() - 1, |i: usize| if i == 0 || i == copies.len() - 1 { 1 } else { order });
         if let Some(torn) = (0..=last).find(|&i| copies[i].len() > most(i)) {
             let message = format!(
-                "E0209: the breakpoint {} is given {} times, but at most {} times is allowed. Delete some of the \
-                 repetitions.",
+                "E0209: the cell end {} is given {} times in [grid.knots], but is allowed at most {} times. Delete \
+                 some of the repetitions.",
                 breakpoints[torn],
                 copies[torn].len(),
                 most(torn)
@@ -117,8 +117,8 @@ fn graded(
         for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
             if let Some(corner) = grid.vector(key).filter(|corner| corner[number] != end) {
                 let message = format!(
-                    "E0210: the corner of the grid at {name} = {} m differs from the outermost breakpoint at {name} = \
-                     {end} m. Delete `{key}`, or make both equal.",
+                    "E0210: the grid has a corner at {name} = {} m, but the first or last value in [grid.knots] is \
+                     {name} = {end} m. Delete `{key}`, or make both equal.",
                     corner[number]
                 );
                 grid.error(key, message, report);
@@ -198,8 +198,8 @@ impl Faces<'_> {
             }
             _ => {
                 let message = format!(
-                    "E0212: the grid has {exact} cells along {name}, not a whole number, and cannot grow, because no \
-                     face along {name} is \"free\". Use for example cell = {}.",
+                    "E0212: the grid has {exact:.3} cells along {name}, but needs a whole number. It can grow at a \
+                     \"free\" face only, and no face along {name} is \"free\". Use for example cell = {}.",
                     (upper - lower) / exact.round().max(1.0)
                 );
                 self.grid.error("cell", message, report);
@@ -217,7 +217,7 @@ fn warn_of_rounding(spec: &GridSpec, report: &mut Report<'_>) {
         if spacing > 1e-6 * axis.shortest() {
             report.warn(format!(
                 "W0208: grid: coordinates of {far:e} m along {name} have rounding errors of {spacing:.1e} m, more \
-                 than 1e-6 of a cell. Shift all coordinates closer to 0."
+                 than 1e-6 of a cell. Corners and grid lines may not coincide. Move all coordinates closer to 0."
             ));
         }
     }

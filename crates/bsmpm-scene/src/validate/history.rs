@@ -108,15 +108,15 @@ fn read(
         && is_never_held(root, side)
     {
         let message = format!(
-            "E0646: nothing supports the boundary `{side}`, so its reaction is always 0. Name another `face`, or set \
-             boundary.{side} to \"fixed\" or \"roller\"."
+            "E0646: boundary `{side}` does not restrain the soil, so its reaction is always 0. Name another `face`, \
+             or set boundary.{side} to \"fixed\" or \"roller\"."
         );
         record.consequence("face", message, &["boundary", "prescribed", "stage"], report);
     }
     let is_outlet = |side: Side| supports(root, side).contains(&Support::Outflow);
     if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
-        let message = "E0646: no material can leave the grid, because no boundary is an outflow. Set a side in \
-                       [boundary] to \"outflow\".";
+        let message = "E0646: no boundary has the condition \"outflow\", so no material can leave the grid. Set a \
+             side in [boundary] to \"outflow\".";
         record.error("quantity", message, report);
     }
     let quantity = match of_strip {
@@ -182,16 +182,16 @@ pub(super) fn too_many(number: usize, most: usize) -> String {
 /// The error of a quantity that a quasi-static analysis does not have.
 pub(super) fn needs_dynamics(quantity: &str) -> String {
     format!(
-        "E0645: a quasi-static analysis has no velocities, and so no \"{quantity}\". Use another quantity, or \
-         analysis.type = \"dynamic\"."
+        "E0645: the quantity \"{quantity}\" needs velocities, but a quasi-static analysis has none. Use another \
+         quantity, or analysis.type = \"dynamic\"."
     )
 }
 
 /// The error of a quantity of flowing water.
 pub(super) fn needs_flow(quantity: &str) -> String {
     format!(
-        "E0646: the quantity \"{quantity}\" needs flow of water, which no material has. Set drainage = \"coupled\" or \
-         \"undrained\" in a material."
+        "E0646: the quantity \"{quantity}\" needs a material with drainage = \"coupled\" or \"undrained\", but the \
+         case has none. Set `drainage` in a material, or use another quantity."
     )
 }
 
@@ -440,7 +440,8 @@ fn bound(key: &str, record: &Record, column: &Column, report: &mut Report<'_>) -
     }
     let allowed = expected.map_or("a number".to_owned(), |expected| expected.to_string());
     let message = format!(
-        "E0665: this limit is {dimension}, but the column `{}` is {allowed}. Correct the unit of `{key}`.",
+        "E0665: this limit has the unit of {dimension}, but the column `{}` is {allowed}. Correct the unit of \
+         `{key}`.",
         column.name
     );
     record.error(key, message, report);

@@ -126,8 +126,8 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
         analysis.error(KEY, message, report);
     }
     if case.flow.is_some() {
-        let message = "E0444: a limit-load analysis raises Young's moduli, which would change the pore pressures of \
-                       soil with pore-water flow. Delete `purpose`, or `drainage` of all materials.";
+        let message = "E0444: purpose = \"limit-load\" raises Young's moduli, so the pore pressures of soil with \
+             pore-water flow would be wrong. Delete `purpose`, or delete `drainage` of all materials.";
         analysis.error(KEY, message, report);
     }
     let is_divided = case.stages.iter().any(|stage| stage.strength_reduction.is_some());
@@ -139,8 +139,8 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
     let follows_strain = |material: &Material| material.softens() || material.hardens() || !material.is_linear();
     if let Some(named) = case.materials.iter().find(|named| follows_strain(&named.material)) {
         let message = format!(
-            "E0446: the strength or stiffness of material `{}` changes with strain, so its load at failure depends \
-             on the displacement. Use a model with constant parameters, or delete `purpose`.",
+            "E0446: the strength or stiffness of material `{}` changes with strain, so the limit load would depend on \
+             the displacement. Use a model with constant parameters, or delete `purpose`.",
             named.name
         );
         analysis.error(KEY, message, report);
@@ -159,8 +159,8 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
     }
     if let Some(name) = inside_cells.first() {
         let message = format!(
-            "E0448: `{name}` ends inside a cell, so its limit load cannot be extrapolated to finer grids. Put a grid \
-             line at this end with grid.cell or [grid.knots]."
+            "E0448: an end of `{name}` lies inside a cell, so limit loads cannot be extrapolated to finer grids. Put \
+             a grid line at this end with grid.cell or [grid.knots]."
         );
         analysis.error(KEY, message, report);
     }
@@ -175,8 +175,8 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
     }
     if let Some(side) = strips.filter(|(_, path)| path.moves()).find_map(|(site, path)| opposed(case, site, path)) {
         let message = format!(
-            "E0450: boundary `{side}` restrains the soil where a displacement is prescribed, so the recorded load \
-             would be zero. Use boundary.{side} = \"free\"."
+            "E0450: boundary `{side}` restrains the soil where a displacement is prescribed. The boundary would carry \
+             the whole load, and the recorded load would be zero. Use boundary.{side} = \"free\"."
         );
         analysis.error(KEY, message, report);
     }
@@ -213,8 +213,8 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
     let most = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(POINTS);
     if dilates && most > POINTS {
         report.warn(format!(
-            "W0423: body.points_per_cell: with {most} points along each axis of a cell, limit loads of dilating soil \
-             are up to 20 % too high. Use points_per_cell = {POINTS}."
+            "W0423: body.points_per_cell: with {most} points along each axis of a cell, volumetric locking makes \
+             limit loads of dilating soil up to 20 % too high. Use points_per_cell = {POINTS}."
         ));
     }
     if case.grid.order != 2 {
@@ -230,7 +230,7 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
     if let Some(named) = case.materials.iter().find(is_far_off) {
         report.warn(format!(
             "W0425: material.{}: with a dilation angle below half the friction angle, limit loads vary by some per \
-             cent with the grid. Compare the load for dilation_angle = friction_angle.",
+             cent with the grid. Compare the upper bound (dilation_angle = friction_angle).",
             named.name
         ));
     }
@@ -256,8 +256,8 @@ fn warn_of_averages(case: &Case, report: &mut Report<'_>) {
     };
     if let Some(named) = case.materials.iter().find(is_loose) {
         report.warn(format!(
-            "W0426: stabilisation.method: loads on `{}`, which dilates and has little cohesion, are up to 42 % wrong \
-             with this method. Use method = \"none\" with points_per_cell = 2.",
+            "W0426: stabilisation.method: limit loads on material `{}`, which dilates and has little cohesion, are up \
+             to 42 % wrong with this method. Use method = \"none\" with points_per_cell = 2.",
             named.name
         ));
     }

@@ -64,10 +64,12 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
         let place = place_of(case, *axis, *line);
         report.warn(match chosen {
             C0Lines::None => format!(
-                "W0216: {reason}, at {place}. Without a C0 line the grid cannot represent this, and stresses within three cells can be off by tens of per cent. Set grid.c0_lines = \"automatic\"."
+                "W0216: {reason}, at {place}. No C0 line (a grid line at which strains may jump) is there. Stresses \
+                 within three cells can be off by tens of per cent. Set grid.c0_lines = \"automatic\"."
             ),
             C0Lines::Automatic => format!(
-                "W0217: {reason}, at {place}. With pore water flow the grid cannot represent this, and stresses nearby can be off by tens of per cent. Use smaller cells there."
+                "W0217: {reason}, at {place}. No C0 line (where strains may jump) is put there, because pore water \
+                 flows. Stresses nearby can be off by tens of per cent. Use smaller cells there."
             ),
         });
     }
@@ -75,8 +77,8 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     let jumps = crossed.or(placed.first().map(|(place, _)| *place));
     if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, record)) {
         report.warn(format!(
-            "W0218: the undrained strength of material.{name} depends on the mean stress, which is inaccurate at {}. Loads can be off \
-             by 4 %. Compare a run with model = \"tresca\".",
+            "W0218: the undrained strength of material.{name} depends on the mean stress, which is inaccurate near \
+             the grid line {}. Loads can be off by 4 %. Compare a run with model = \"tresca\".",
             place_of(case, axis, line)
         ));
     }
@@ -89,8 +91,8 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     }
     if let Some((axis, line)) = crossed.filter(|_| case.flow.is_some()) {
         report.warn(format!(
-            "W0219: grid.c0_lines: saturated soil that moves across the C0 line at {} loses volume, so loads become \
-             too small. Increase points_per_cell, or set grid.c0_lines = \"none\".",
+            "W0219: grid.c0_lines: saturated soil loses volume at the C0 line (where strains may jump) at {}, so \
+             loads become too small. Increase points_per_cell, or set grid.c0_lines = \"none\".",
             place_of(case, axis, line)
         ));
     }
@@ -216,8 +218,8 @@ fn doubt(
     if on_line {
         let stiffer = || {
             format!(
-                "W0220: the stiffness of material.{a} and material.{b} differs by a factor of {} ({SHOWN} was \
-                 verified). Stresses in the stiffer material are wrong after yielding. Reduce the larger `young`.",
+                "W0220: the stiffness of material.{a} and material.{b} differs by a factor of {} (limit {SHOWN}). \
+                 Stresses in the stiffer one are wrong after yielding. Reduce the larger `young`.",
                 brief(moduli)
             )
         };

@@ -303,8 +303,8 @@ pub(super) fn initial(
     let dims = root.word::<Geometry>("geometry")?.dims();
     if let Some(gravity) = gravity.filter(|of| !of.acts_down(dims, regime)) {
         let message = format!(
-            "E0406: gravity.acceleration = {:?} m/s2 is not vertical, but initial stresses from k0 balance only \
-             vertical gravity. Correct gravity.acceleration, or use initial.gravity = \"elastic\".",
+            "E0406: gravity.acceleration = {:?} m/s2 is not vertical, but initial stresses from k0 are in equilibrium \
+             with vertical gravity only. Correct this vector, or use initial.gravity = \"elastic\".",
             &gravity.acceleration[..dims]
         );
         root.record("gravity")?.error("acceleration", message, report);
@@ -400,8 +400,8 @@ fn loaded(
         && gravity.is_straight(dims)
     {
         let message = format!(
-            "E0409: [initial] balances the full weight at t = 0, but gravity.ramp lets gravity grow until t = {}. \
-             Delete gravity.ramp, or [initial].",
+            "E0409: [initial] gives the stresses of the full weight at t = 0, but gravity.ramp increases gravity from \
+             zero until t = {}. Delete gravity.ramp, or delete [initial].",
             gravity.ramp
         );
         written.error("ramp", message, report);
@@ -429,8 +429,8 @@ fn is_of_k0(material: &Record) -> bool {
 fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
     let (ocr, friction) = (material.number("ocr")?, profile(material, "friction_angle")?);
     if friction.per_metre != 0.0 {
-        let message = "E0410: k0 would follow from `ocr` and the friction angle, but the friction angle varies with \
-                       depth and k0 cannot. Give `k0`, or layers with a constant friction angle.";
+        let message = "E0410: k0 from `ocr` depends on the friction angle, which varies with depth here, but a \
+             material has one k0. Give `k0`, or divide the soil into layers with a constant friction angle.";
         material.error("ocr", message, report);
         return None;
     }

@@ -117,8 +117,8 @@ fn read(
     let Reduction { factor, elastic, stiffness, is_for_limit_load } = around.reduction;
     let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
     if factor != 1.0 && !elastic && of_yield {
-        let message = "E0312: `ocr` cannot be combined with strength_reduction.factor: a reduced strength would \
-                       enlarge the initial yield surface. Give `preconsolidation` instead of `ocr`.";
+        let message = "E0312: `ocr` sets the yield surface relative to the initial stress, so a lower strength \
+             (strength_reduction.factor) would enlarge it. Give `preconsolidation` instead of `ocr`.";
         record.error("ocr", message, report);
     }
     let (young, poisson, law) = (young?, poisson?, law?);

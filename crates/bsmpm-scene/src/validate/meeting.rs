@@ -89,7 +89,7 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
         Other::Rigid(_) => {
             let message = format!(
                 "E0251: `{name}` ([[prescribed]] or [footing]) and `{other}` ([[rigid]]) share an edge and move \
-                 differently. The soil there cannot follow both. Use one kind for both, or leave a gap of a cell."
+                 differently. The soil cannot follow both. Use one kind of table, or leave a cell between."
             );
             record.error("from", message, report);
         }
@@ -118,7 +118,7 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
         }
         Other::Strip { along, edge, .. } if along > ALONG * edge => {
             let message = format!(
-                "E0251: `{name}` and `{other}` are adjacent, and one of the two slides {along:.3} m along its surface \
+                "E0251: `{name}` and `{other}` are adjacent, and one of the two moves {along:.3} m along its surface \
                  (at most {:.3} m). The soil cannot follow both. Leave a cell between the two.",
                 ALONG * edge
             );

@@ -45,8 +45,8 @@ fn too_soon(case: &Case, record: &Record, report: &mut Report<'_>) {
     let least = 1e-6 * case.analysis.dt;
     let message = |time: f64| {
         format!(
-            "E0664: the time t = {time:e} is too early: no step ends so close to the start, t = 0. \
-            Use a time above {least:e}."
+            "E0664: the time t = {time:e} is too close to the start (t = 0), so no step ends there. Use a time above \
+             {least:e}."
         )
     };
     if let (Some(time), Some(output)) = (case.output.times.first(), record.record("output"))
@@ -71,7 +71,7 @@ fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
         }
         if !matches!(case.initial, Some(Initial::AtRest(_))) {
             let message = "E0318: the stiffness of this model depends on the stress, so the case needs initial \
-                           stresses. Add [initial] with `k0` and without `gravity`.";
+                 stresses. Add [initial] with `k0`. Do not give initial.gravity, which starts from zero stress.";
             written.error("model", message, report);
         } else if named.density.is_none() {
             let message = format!(
@@ -115,8 +115,8 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let slowest = written.number("reference_rate").filter(|_| is_of_clay).map(|rate| rate * case.analysis.dt);
         if let Some(strain) = slowest.filter(|strain| *strain < DIGITS) {
             report.warn(format!(
-                "W0312: {}: at this rate the strain of one step is only {strain:.1e} (at least {DIGITS:e}), so the \
-                 strength is inaccurate. Increase `reference_rate`, and give the cohesion for the new rate.",
+                "W0312: {}: the strain of one step at this rate is {strain:.1e} (at least {DIGITS:e}), so the \
+                 strength is inaccurate. Increase `reference_rate`, and give the cohesion measured at the new rate.",
                 written.path_of("reference_rate")
             ));
         }
@@ -142,7 +142,7 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
         None => "Extend a body to a boundary of the grid, and set that boundary to \"fixed\".".to_owned(),
     };
     let message = format!(
-        "E0270: no support holds the bodies along {}, so a quasi-static analysis has no solution. {remedy}",
+        "E0270: no support restrains the bodies along {}, so a quasi-static analysis has no solution. {remedy}",
         free.join(" and ")
     );
     report.error(record.place("boundary"), "boundary", message);
@@ -159,8 +159,8 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let mut refuse = |message: &str| boundary.error(side, message, report);
         if case.analysis.regime == Regime::QuasiStatic {
             refuse(
-                "E0671: an absorbing boundary supports nothing in a quasi-static analysis, which has no waves. Use \
-                 \"fixed\" or \"roller\".",
+                "E0671: an absorbing boundary reacts to velocities, but a quasi-static analysis has none, so the \
+                 boundary would support nothing. Use \"fixed\" or \"roller\".",
             );
         }
         if case.gravity.is_some() && case.initial.is_none() {
@@ -178,8 +178,8 @@ fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let absorbs = case.boundary[axis][upper] == Support::Absorbing;
         if absorbs && axis == 0 && case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
             refuse(
-                "E0674: in an earthquake the ground moves sideways, and an absorbing side would hold the ground back. \
-                 Use \"free-field\".",
+                "E0674: in an earthquake the ground moves horizontally, and an absorbing side would resist this \
+                 motion. Use \"free-field\".",
             );
         }
     }
@@ -191,7 +191,7 @@ fn shaken(case: &Case, report: &mut Report<'_>) {
         if case.shaking.iter().any(|(_, ground)| ground[component] != 0.0) && !holds(case, component) {
             report.warn(format!(
                 "W0670: shaking: the base moves along {name}, but no boundary supports the ground along {name}, so \
-                 the ground stays behind. Make a side \"fixed\", usually the bottom."
+                 the ground does not follow the base. Make a side \"fixed\", usually the bottom."
             ));
         }
     }
@@ -226,8 +226,8 @@ fn thrown_back(case: &Case, report: &mut Report<'_>) {
         return;
     }
     report.warn(format!(
-        "W0671: analysis.dt: in a step of {:.3e} s a wave crosses the body of {name} more than {MOST_CROSSINGS} times \
-         (one passage: {time:.3e} s), so impacts gain energy. Use dt = {:.1e} s or less.",
+        "W0671: analysis.dt: in a step of {:.3e} s a wave crosses the body of material {name} more than \
+         {MOST_CROSSINGS} times (once in {time:.3e} s), so impacts create energy. Use dt = {:.1e} s or less.",
         case.analysis.dt,
         MOST_CROSSINGS * time
     ));
@@ -261,8 +261,8 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let is_sought = case.settles || case.initial == Some(Initial::Elastic);
     if footing && !stands && is_sought {
         report.warn(
-            "W0672: footing: the ground hangs from the footing in the initial equilibrium, because nothing else \
-             supports the ground. Fix a side, or activate the footing in a [[stage]].",
+            "W0672: footing: in the initial equilibrium the footing carries the ground in tension, because nothing \
+             else supports the ground. Fix a side, or activate the footing in a [[stage]].",
         );
     }
     let since_start = |case: &Case, number: usize| {
@@ -273,8 +273,8 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         case.prescribed[number].rests = lies && lifts;
         if lies && !lifts && is_sought && since_start(case, number) {
             report.warn(format!(
-                "W0672: {}: the ground hangs from this prescribed motion in the initial equilibrium. Activate the \
-                 motion in a [[stage]], or use [footing].",
+                "W0672: {}: in the initial equilibrium this prescribed motion carries a part of the ground in \
+                 tension, so the initial stresses are wrong. Activate the motion in a [[stage]], or use [footing].",
                 record.path
             ));
         }

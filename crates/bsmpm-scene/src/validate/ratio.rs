@@ -25,10 +25,11 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
     if root.gives("water") || case.flow.is_some() {
         let message = if case.flow.is_some() {
-            "E0320: the pore pressure is already computed by the flow of water in this case. Remove `ru`, or \
-             `drainage` of all materials."
+            "E0320: this case computes the pore pressure from the flow of water, so `ru` would define the pore \
+             pressure twice. Remove `ru`, or remove `drainage` from all materials."
         } else {
-            "E0320: the pore pressure is already given by the water table in [water]. Remove `ru`, or [water]."
+            "E0320: [water] already gives the pore pressure by a water table, so `ru` would define the pore pressure \
+             twice. Remove `ru`, or [water]."
         };
         material.error(KEY, message, report);
     }
@@ -51,8 +52,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let changes = |stage: &crate::case::Stage| !(stage.add.is_empty() && stage.remove.is_empty());
     let exchanges = |stage: &crate::case::Stage| stage.materials.iter().any(|&(from, to)| wet(from) || wet(to));
     if case.stages.iter().any(|stage| changes(stage) || exchanges(stage)) {
-        let message = "E0322: the pore pressure from `ru` would be wrong after a stage that adds, removes or changes \
-                       soil. Use [water] instead of `ru`, or delete these stages.";
+        let message = "E0322: the pore pressure from `ru` follows from the initial weight, and is wrong after a stage \
+             adds, removes or changes soil. Use [water] instead of `ru`, or delete these stages.";
         material.error(KEY, message, report);
     }
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
@@ -64,8 +65,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         if matches!(support, Support::Absorbing | Support::FreeField) {
             let side = side.word();
             let message = format!(
-                "E0322: the pore pressure from `ru` is not available with the absorbing boundary `{side}`. Set \
-                 boundary.{side} = \"fixed\" or \"roller\"."
+                "E0322: the pore pressure from `ru` is not available with an absorbing or free-field boundary, here \
+                 `{side}`. Set boundary.{side} = \"fixed\" or \"roller\"."
             );
             material.error(KEY, message, report);
         }

@@ -49,8 +49,8 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     let Some(table) = root.record("strength_reduction") else { return };
     if !table.gives("stage") {
         let of_stage = ["steps", "drainage"].into_iter().filter(|key| table.gives(key));
-        let message = "E0631: this key has no effect without `stage`, which names the stage at whose end the strength \
-                       is reduced. Remove this key, or add `stage`.";
+        let message = "E0631: this key applies to a strength reduction at the end of a stage, but `stage` is not \
+             given. Remove this key, or add `stage`.";
         of_stage.for_each(|key| table.error(key, message, report));
         return;
     }
@@ -67,8 +67,8 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         return;
     };
     if until == 0.0 && case.initial.is_none() && !unloaded {
-        let message = "E0634: the ground has no stress at the start, so the ground cannot fail there at any strength. \
-             Add [initial], or use stage = \"end\".";
+        let message = "E0634: the strength is to be reduced at the start, but the ground has no stress then, so it \
+             cannot fail at any strength. Add [initial], or use stage = \"end\".";
         table.error("stage", message, report);
         return;
     }
@@ -107,8 +107,9 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
     let made: Vec<bool> = (0..case.materials.len()).map(|number| case.is_followed(number)).collect();
     let Some(flow) = &mut case.flow else {
         if table.word("drainage") == Some(Failure::Undrained) {
-            let message = "E0637: undrained failure needs flow of water, which no material has. Remove `drainage` \
-                           here, or set drainage = \"undrained\" in a material.";
+            let message = "E0637: drainage = \"undrained\" acts on pore water during failure, but no material has \
+                 drainage = \"coupled\" or \"undrained\". Remove this key, or set drainage = \"undrained\" in a \
+                 material.";
             table.error("drainage", message, report);
         }
         return;
@@ -122,8 +123,8 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
     let changed =
         [("elastic", table.flag("elastic") == Some(true)), ("stiffness", table.number("stiffness") != Some(1.0))];
     for (key, _) in changed.into_iter().filter(|(_, changed)| *changed && !unloaded) {
-        let message = "E0638: this key changes the stiffness from the first step on, so the consolidation would be \
-                       wrong. Remove this key, or set unloaded = true.";
+        let message = "E0638: this key changes the stiffness from the first step on, so the consolidation before the \
+             strength reduction would be wrong. Remove this key, or set unloaded = true (start without stress).";
         table.error(key, message, report);
     }
 }

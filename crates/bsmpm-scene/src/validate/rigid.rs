@@ -196,8 +196,8 @@ fn moves_as_given(record: &Record, rigid: &Rigid, report: &mut Report<'_>) {
 /// Says that a motion is prescribed and free.
 fn prescribed_and_free(motion: &str) -> String {
     format!(
-        "E0423: the {motion} is prescribed by this key, but `free` lists it, too. Delete this key, or remove the \
-             {motion} from `free`."
+        "E0423: this key prescribes the {motion} of the rigid body, but `free` lists the same motion as free. Delete \
+         this key, or remove the {motion} from `free`."
     )
 }
 
@@ -235,8 +235,8 @@ fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, repor
     for key in ["ramp", "amplitude"].into_iter().filter(|key| record.gives(key) && rigid.force == [0.0; 3]) {
         let path = record.path_of(key);
         report.warn(format!(
-            "W0410: {path}: this key has no effect, because the rigid body has no `force` or `moment`. Delete this \
-             key, or give a force or moment."
+            "W0410: {path}: the rigid body has no `force` or `moment` that this key could scale, so the key has no \
+             effect. Delete the key, or give a force or moment."
         ));
     }
     for key in ["start_velocity", "start_spin"] {
@@ -328,14 +328,14 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (number, (rigid, record)) in case.rigid.iter().zip(root.records("rigid")).enumerate() {
         if rigid.velocity != [0.0; 3] && case.acts_since(Acting::Rigid(number), 0.0).is_none() {
             let key = if record.gives("start_velocity") { "start_velocity" } else { "start_spin" };
-            let message = "E0430: a stage adds this rigid body later, so its initial velocity has no effect. Delete \
-                           this key, and let `force` or gravity move the body.";
+            let message = "E0430: an initial velocity applies at t = 0, but a stage adds this rigid body later. \
+                 Delete this key, and let `force` or gravity move the body.";
             record.error(key, message, report);
         }
         if case.settles || case.initial == Some(Initial::Elastic) {
             report.warn(format!(
-                "W0414: {}: the equilibrium of [initial] is found without rigid bodies, so soil that they support moves \
-                 at the start. Give only `k0` in [initial], or replace [initial] by gravity.ramp.",
+                "W0414: {}: the equilibrium of [initial] is found without rigid bodies, so soil that these bodies \
+                 support moves at the start. Give only `k0` in [initial], or replace [initial] by gravity.ramp.",
                 record.path
             ));
         }
@@ -405,8 +405,8 @@ fn joined(case: &Case, (number, rigid): (usize, &Rigid), record: &Record, report
         format!("this rigid body next to body.{body}")
     };
     report.warn(format!(
-        "W0416: {}: a stage adds {added}: material points closer than half their spacing are pushed away in one \
-         step, and strained. Leave a gap of half a spacing of material points.",
+        "W0416: {}: a stage adds {added}. Material points closer than half their spacing to the rigid body are pushed \
+         away in one step, and strained. Leave a gap of half a spacing of material points.",
         record.path
     ));
 }

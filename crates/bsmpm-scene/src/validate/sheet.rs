@@ -40,8 +40,8 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
     };
     let at_bodies = |all: Vec<Triangle>| match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
         Some(at) => Err(format!(
-            "E0401: at the start of the analysis no body lies at {at:.3?} m. Move the loaded surface to the surface \
-             of a body."
+            "E0401: at the start of the analysis no body exists at the point {at:.3?} m of the loaded surface. Move \
+             the loaded surface to the surface of a body."
         )),
         None if all.is_empty() => {
             Err("E0201: no part of the sphere is inside the grid. Move the sphere into the grid, or enlarge the grid."
@@ -159,8 +159,8 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
     match (0..all.len()).filter(|of| piece[*of] == *of).count() {
         1 => Ok(()),
         pieces => Err(format!(
-            "E0227: the surface consists of {pieces} separate pieces. Weld their vertices with a mesh tool, or give \
-             each piece its own [[traction]]."
+            "E0227: the loaded surface consists of {pieces} separate pieces, but must be in one piece. Weld the \
+             vertices of the pieces with a mesh tool, or give each piece its own [[traction]]."
         )),
     }
 }

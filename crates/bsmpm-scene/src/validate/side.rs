@@ -62,8 +62,8 @@ pub(super) fn of_pressures(case: &mut Case, root: &Record, report: &mut Report<'
         if let Some((t, _)) = sides.iter().find(|(_, side)| side.is_none() || *side != first) {
             let key = if record.gives("pressure_path") { "pressure_path" } else { "pressure" };
             let message = format!(
-                "E0252: at t = {t} soil lies on both sides of the loaded surface, or on neither side. The direction \
-                 of the pressure is not defined. Move the load to a free surface."
+                "E0252: at t = {t} soil lies on both sides of the loaded surface, or on neither side. A pressure acts \
+                 towards the soil, so its direction is not defined. Move the load to a free surface."
             );
             record.error(key, message, report);
         }

@@ -48,8 +48,8 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
     if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
         let message = format!(
-            "E0401: at the start of the analysis no body lies between {from:.3?} and {to:.3?} m. Move this place \
-                 to the surface of a body."
+            "E0401: no body lies between {from:.3?} and {to:.3?} m at the start of the analysis, so this footing or \
+             motion would not touch any soil. Move the footing or motion to the surface of a body."
         );
         record.consequence(key, message, &["body"], report);
     }
@@ -144,8 +144,8 @@ pub(super) fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report
     let support = around.boundary?[face.axis][usize::from(face.upper)];
     if support != Support::Free {
         let message = format!(
-            "E0236: the face \"{side}\" has a support in [boundary], too, so its motion is prescribed twice. Set \
-             boundary.{side} = \"free\"."
+            "E0236: this table and [boundary] both prescribe the motion of the face \"{side}\". Set boundary.{side} = \
+             \"free\"."
         );
         record.error("face", message, report);
         return None;

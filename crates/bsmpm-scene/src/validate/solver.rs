@@ -95,12 +95,12 @@ fn extended_splines(
     let given = solver.word_if_given(EXTENSION)?;
     let refusal = match (regime?, order?) {
         (Regime::Dynamic, _) => {
-            "E0603: extension = \"linear\" is not available in a dynamic analysis, where thin layers would move too \
-             fast. Use extension = \"off\"."
+            "E0603: in a dynamic analysis extension = \"linear\" would make soil layers thinner than a cell move too \
+             fast, so it is not available. Use extension = \"off\"."
         }
         (Regime::QuasiStatic, 3) => {
-            "E0603: extension = \"linear\" does not improve results with cubic splines, and is not available there. \
-             Use extension = \"off\"."
+            "E0603: extension = \"linear\" is not available with cubic splines, because it does not improve their \
+             results. Use extension = \"off\"."
         }
         (Regime::QuasiStatic, _) => {
             let extended = given.unwrap_or(ExtendedSplines::Linear);
@@ -206,8 +206,8 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     if (is_own || case.solver.linear.applications > 0) && (case.flow.is_some() || condenses) {
         let what = if condenses { "freely moving rigid bodies" } else { "flow of water" };
         let message = format!(
-            "E0604: the chosen linear solver is not available for a case with {what}. Use linear = \
-            \"direct\"."
+            "E0604: the chosen linear solver is iterative and is not verified for a case with {what}. Use linear = \
+             \"direct\"."
         );
         solver.error("linear", message, report);
         return;

@@ -174,16 +174,16 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
         let is_wet = root.gives("water") || root.named("material").iter().any(|(_, of)| of.gives("drainage"));
         let is_solid = root.word("geometry") == Some(Geometry::Solid);
         if support == Support::Absorbing && (side != Side::Bottom || is_wet || is_solid) {
-            let message = "E0614: a stage can make only the bottom absorbing, and only in 2-D without water. Move \
-                           this side from the stage to [boundary], and add [initial].";
+            let message = "E0614: a stage can make a boundary absorbing only at the bottom of a 2-D case without \
+                 water. Move this side from the stage to [boundary], and add [initial].";
             boundary.error(side.word(), message, report);
         }
         let moves = |motion: &Record| motion.word::<Side>("face") == Some(side);
         if let Some(motion) = root.records("prescribed").iter().find(|motion| support != Support::Free && moves(motion))
         {
             let message = format!(
-                "E0615: {} already prescribes the motion of this boundary, so the stage cannot support the boundary. \
-                 Remove this side from the stage.",
+                "E0615: {} already prescribes the motion of this boundary, so the stage cannot restrain the same \
+                 boundary. Remove this side from the stage.",
                 motion.path
             );
             boundary.error(side.word(), message, report);
@@ -322,8 +322,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             };
             if has_moved {
                 let message = format!(
-                    "E0624: `{name}` moves before this stage activates it, and would then jump to another position. \
-                     Begin the path of `{name}` at t = {}.",
+                    "E0624: the path of `{name}` begins before this stage activates the motion, so the position would \
+                     jump at this stage. Begin the path of `{name}` at t = {}.",
                     stage.at
                 );
                 record.error("activate", message, report);
@@ -397,8 +397,8 @@ fn exchanged(case: &Case, (from, to): (usize, usize), pair: &Record, report: &mu
     }
     if !to.1.material.is_linear() {
         let message = format!(
-            "E0625: a stage cannot change to material.{}: its stiffness needs a stress history, which the earlier \
-             material did not record. Change to a material with constant stiffness.",
+            "E0625: the stiffness of material.{} depends on the stress history, which the replaced material has not \
+             recorded. In a stage, change to a material with constant stiffness.",
             to.1.name
         );
         pair.error("to", message, report);

@@ -96,8 +96,8 @@ fn contact_of(
     let regime = root.record("analysis").and_then(|analysis| analysis.word("type"));
     if regime == Some(AnalysisType::Dynamic) {
         report.warn(format!(
-            "W0406: {}: this contact is verified in quasi-static analysis only: in dynamics, impacts may create or \
-             lose energy. Record the energy in a [[history]], and check the energy balance.",
+            "W0406: {}: this contact is verified in quasi-static analysis only. In dynamic analysis impacts may \
+             create or lose energy. Record the energy in a [[history]], and check the energy balance.",
             record.path_of(key)
         ));
     }
@@ -187,8 +187,8 @@ fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_
     let outward = |u: f64| if face.upper { u > 0.0 } else { u < 0.0 };
     if let Some((t, u)) = path.rows.iter().find(|(_, u)| outward(u[face.axis])) {
         let message = format!(
-            "E0420: at t = {t} the face would be {} m outside the grid, but a face can move only inwards or along \
-             itself. Reverse the motion.",
+            "E0420: at t = {t} the face would be {} m outside the grid, but a face of the grid can move only inwards \
+             or parallel to itself. Reverse the motion.",
             u[face.axis].abs()
         );
         record.error(motion(record), message, report);
@@ -213,8 +213,8 @@ pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
         let (name, history) = (name_of_strip(case, number), &history.name);
         report.warn(match support {
             Support::Roller => format!(
-                "W0407: `{name}` is inclined and ends at the roller boundary `{side}`, so a part of its force is \
-                 missing in history `{history}`. Use only the force component along boundary `{side}`."
+                "W0407: `{name}` is inclined and ends at roller boundary `{side}`, which carries a part of its force. \
+                 This part is missing in history `{history}`. Use only the component along `{side}`."
             ),
             _ => format!(
                 "W0408: `{name}` ends at the fixed boundary `{side}`, so a part of its force goes into the boundary \

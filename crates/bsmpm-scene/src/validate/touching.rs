@@ -28,8 +28,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for Overlap { one, other, t } in &overlaps {
         let [name, of] = [one, other].map(|number| &case.rigid[*number].name);
         let message = format!(
-            "E0249: rigid bodies `{name}` and `{of}` overlap on their prescribed paths at t = {t:.4}. Contact between \
-             rigid bodies is not available. Change one of the paths, or reduce analysis.end."
+            "E0249: rigid bodies `{name}` and `{of}` overlap at t = {t:.4} on their prescribed paths. Contact between \
+             the two is not available. Change one of the paths, or reduce analysis.end."
         );
         if let Some(record) = root.records("rigid").get(*other) {
             record.error("name", message, report);
@@ -106,8 +106,8 @@ fn check_meetings(case: &Case, root: &Record, report: &mut Report<'_>) {
                  wide, so the forces are about {excess:.0} % too large. Use smaller cells, or [[prescribed]] for both."
             );
             let error = format!(
-                "E0250: rigid bodies `{name}` and `{of}` lie side by side and move differently. Their forces would be \
-                 {excess:.0} % too large ({cells:.0} cells across). Use smaller cells, or [[prescribed]] for both."
+                "E0250: rigid bodies `{name}` and `{of}` touch and move differently. Forces are {excess:.0} % too \
+                 large ({cells:.0} cells across; needed: 10). Use smaller cells, or [[prescribed]] for both."
             );
             match root.records("rigid").get(other) {
                 Some(record) if cells < FEWEST_CELLS => record.error("name", error, report),

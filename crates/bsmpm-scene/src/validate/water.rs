@@ -51,8 +51,8 @@ pub(super) fn read(
     let (acceleration, axes) = (gravity?.acceleration, grid?.dims());
     if !gravity?.acts_down(axes, regime) {
         let message = format!(
-            "E0523: gravity of {:?} m/s2 is not vertical, but hydrostatic pore pressure needs gravity straight down. \
-             Give only a negative {} component.",
+            "E0523: gravity of {:?} m/s2 does not point vertically downwards, but hydrostatic pore pressure requires \
+             this direction. Give a negative {} component, and set the other components to zero.",
             &acceleration[..axes],
             ["x", "y", "z"][axes - 1]
         );
@@ -173,7 +173,7 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
     let steepest = places.windows(2).filter(|pair| !is_step(pair)).map(slope).fold(0.0, f64::max);
     if steepest > GENTLE {
         report.warn(format!(
-            "W0523: {key}: the line has a slope of {steepest:.3} (limit {GENTLE}): if water flows along it, pore \
+            "W0523: {key}: the line has a slope of {steepest:.3} (limit {GENTLE}). If water flows along it, pore \
              pressures are {:.0} % too high. Accept this as conservative, or set `drainage = \"coupled\"`.",
             100.0 * steepest * steepest / (1.0 + steepest * steepest)
         ));
@@ -184,15 +184,15 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
-        let message = "E0526: [water] and [shaking] cannot be combined, because the pore pressures of [water] do not \
-                       react to an earthquake. Remove [water], and use undrained strengths.";
+        let message = "E0526: [water] and [shaking] cannot be combined, because the pore pressures of [water] stay \
+             hydrostatic during an earthquake. Remove [water], and use undrained strengths.";
         report.error(written.origin, &written.path, message);
     }
     for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
         if matches!(support, Support::Absorbing | Support::FreeField) {
             let message = format!(
-                "E0527: the condition \"{support}\" of this boundary is not available together \
-                                   with [water]. Use \"roller\"."
+                "E0527: the boundary condition \"{support}\" is not available together with [water], because its \
+                 dashpots would neglect the pore water. Use \"roller\"."
             );
             let side = side.word();
             report.error(record.place("boundary"), &format!("boundary.{side}"), message);
@@ -217,8 +217,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let wets = |body: &usize| case.materials[case.bodies[*body].material].saturated.is_some();
     if water.table.moves() && case.stages.iter().any(|stage| stage.add.iter().any(wets)) {
         report.warn(
-            "W0525: water: bodies that a stage adds are saturated up to the water level of t = 0, although the level \
-             moves. Give such bodies a material with the unit weight at their stage.",
+            "W0525: water: bodies that a stage adds get the saturated unit weight below the water level of t = 0, \
+             although the level moves. Give such bodies a material with the unit weight at their stage.",
         );
     }
 }
@@ -237,8 +237,8 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
         if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number && is_wet(body))
         {
             let message = format!(
-                "E0528: this soil below the water table is lighter than water ({:.2} kN/m3) or has no weight, so it \
-                 would float. Set `saturated_unit_weight`, for example to \"20 kN/m3\".",
+                "E0528: the unit weight of this soil below the water table is missing or below that of water ({:.2} \
+                 kN/m3), so the soil would float. Set `saturated_unit_weight`, for example to \"20 kN/m3\".",
                 water.unit_weight * 1e-3
             );
             let key = ["saturated_unit_weight", "unit_weight", "density"].into_iter().find(|key| written.gives(key));

@@ -132,7 +132,7 @@ const MATRIX: &[Input] = &[
                 "[0.5, \"50 cm\"]",
                 "[0.5, 0.7]",
                 "grid.cell",
-                "along y, not a whole number, and cannot grow, because no face along y is \"free\". Use for example \
+                "along y, but needs a whole number. It can grow at a \"free\" face only, and no face along y is \"free\". Use for example \
                  cell = 0.75",
             ),
             row("cell  = [0.5, \"50 cm\"]", "cell = [4, 3]", "footing.to", "E0235").down(76),
@@ -169,7 +169,7 @@ const MATRIX: &[Input] = &[
             row("face = \"right\"", "face = \"top\"", "prescribed.0.face", "E0236"),
         ],
         refused_static: &[
-            row("bottom = \"fixed\"", "", "boundary", "no support holds the bodies along x").up(1),
+            row("bottom = \"fixed\"", "", "boundary", "no support restrains the bodies along x").up(1),
             row("bottom = \"fixed\"", "bottom = \"roller\"", "boundary", "a quasi-static analysis has no solution")
                 .up(1),
         ],

@@ -68,7 +68,7 @@ pub const SOLID: &[Row] = &[
     ),
     row("level = 2.5", "base = [[2, 0, 1]]", "body.4.terrain.base", "two points along x"),
     row("level = 2.5", BASE, "body.4.terrain.base", "heights at different points"),
-    row("[4.0, 3.0, 2.75]]", "[3.5, 3.0, 2.75]]", "body.4.terrain.top", "not a regular grid"),
+    row("[4.0, 3.0, 2.75]]", "[3.5, 3.0, 2.75]]", "body.4.terrain.top", "do not form a regular grid of points"),
     row("[4.0, 3.0, 2.75]]", "[4.0, 3.0, 3.75]]", "body.4.terrain", "ends at z = 3"),
     row("  [5, 3, 4, 5, 5, 4, 7, 3, 4],", "  ", "body.5.surface.triangles", "not closed at 3 edges").up(1),
     row("[5, 3, 4, 5, 5, 4, 7, 3, 4]", "[5, 3, 4, 5, 5, 4]", "body.5.surface.triangles", "a list of 6"),

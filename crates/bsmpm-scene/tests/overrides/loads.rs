@@ -421,7 +421,7 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
     let inclined = warned("from=[0, 1.4], to=[1, 1.2]", &cone);
     assert!(
         inclined.len() == 1
-            && inclined[0].contains("W0407: `prescribed.0` is inclined and ends at the roller boundary `left`"),
+            && inclined[0].contains("W0407: `prescribed.0` is inclined and ends at roller boundary `left`"),
         "{inclined:?}"
     );
     assert!(warned("from=[0.5, 1.3], to=[1.5, 1.1]", &cone).is_empty());

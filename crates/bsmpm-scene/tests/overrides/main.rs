@@ -99,8 +99,12 @@ fn errors_cite_the_override() {
         ("grid.cell=5 s", "grid.cell", "unit of time"),
         ("grid.cel=5 mm", "grid.cel", "did you mean `cell`?"),
         ("body.6.points_per_cell=3", "body.6", "missing"),
-        ("body.9.points_per_cell=3", "body.9.points_per_cell", "has no item 9, because it has 6 items"),
-        ("body.x.points_per_cell=3", "body.x.points_per_cell", "`x` is not the number of an item of the list"),
+        ("body.9.points_per_cell=3", "body.9.points_per_cell", "has no item 9. It has 6 items"),
+        (
+            "body.x.points_per_cell=3",
+            "body.x.points_per_cell",
+            "`x` is not a number, but a list needs the number of an item",
+        ),
         ("shaking.acceleration.file=a.csv", "shaking.acceleration.file", "E0027"),
         ("shaking={acceleration={file=\"a.csv\"}}", "shaking.acceleration", "E0027"),
         ("title.x=3", "title.x", "not a table"),
@@ -218,18 +222,18 @@ fn words_of_retired_keys_that_change_nothing_are_read_with_a_warning() {
     for (set, reported) in [
         (
             "solver.background_kind=strain",
-            "W0001: solver.background_kind: this key has no effect any more: the background always resists strain. Delete \
-             it.",
+            "W0001: solver.background_kind: this key has no effect any more, because the background always resists \
+             strain. Delete the key.",
         ),
         (
             "solver.background_kind=laplacian",
-            "W0001: solver.background_kind: this key has no effect any more: the background always resists strain. Delete \
-             it.",
+            "W0001: solver.background_kind: this key has no effect any more, because the background always resists \
+             strain. Delete the key.",
         ),
         (
             "solver.background_cells=occupied",
-            "W0001: solver.background_cells: this key has no effect any more: all occupied cells always have the \
-             background. Delete it.",
+            "W0001: solver.background_cells: this key has no effect any more, because all occupied cells always have \
+             the background. Delete the key.",
         ),
     ] {
         let case = valid(STATIC, &[set]);
@@ -416,7 +420,7 @@ fn drains_that_feed_the_ground_are_warned_of() {
     assert!(warned(&full, &[]).is_empty() && warned(&full, &[permeable, quick]).is_empty());
     // Its suction is lost in short steps, too.
     let found = warned(SEEPING, &[permeable, quick, "analysis.end=72000"]);
-    assert!(found.len() == 1 && found[0].contains("7 cells enters the soil during the analysis"), "{found:?}");
+    assert!(found.len() == 1 && found[0].contains("7 cells high during the analysis"), "{found:?}");
     assert!(warned(SEEPING, &[permeable, "water.level=1.0"]).is_empty());
 }
 

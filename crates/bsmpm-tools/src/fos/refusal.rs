@@ -18,22 +18,22 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
     let reasons = [
         (
             case.analysis.regime == Regime::Dynamic,
-            "E0810: the search of `bsmpm fos` needs a static equilibrium, but the analysis is dynamic. Set \
-             `analysis.type = \"quasi-static\"`.",
+            "E0810: `bsmpm fos` needs a static equilibrium, but the analysis is dynamic. Set `analysis.type = \
+             \"quasi-static\"`.",
         ),
         (
             any(Material::hardens),
-            "E0811: a material hardens (residual strength above peak), so the factor of safety depends on the \
-             displacement. Set `hardening = 0`, or a residual strength not above the peak.",
+            "E0811: a material hardens (`hardening`, or residual strength above peak), so the factor of safety \
+             depends on the displacement. Set `hardening = 0`, or a residual strength not above the peak.",
         ),
         (
             any(|material| !material.is_linear()),
-            "E0812: the strength of Cam-clay depends on its stress history, which the trials of the search do not \
-             have. Use \"tresca\" (undrained strength) or \"mohr-coulomb\" (critical state).",
+            "E0812: the strength of Cam-clay depends on its stress history, but the trial runs start without stress. \
+             Use \"tresca\" (undrained strength) or \"mohr-coulomb\" (critical state).",
         ),
         (
             any(|material| material.softens() && material.over(1.0).is_some()),
-            "E0813: the strength of a material depends on the shear rate, but the trials are static. Remove \
+            "E0813: the strength of a material depends on the shear rate, but the trial runs are static. Remove \
              `rate_parameter` and `reference_rate`, and give the strength at the relevant rate.",
         ),
         (
@@ -43,13 +43,13 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (
             case.stages.iter().any(|stage| stage.strength_reduction.is_some()),
-            "E0815: a stage of the case has `strength_reduction`, but the search for the factor of safety would \
-             reduce the strength again. Remove this key from the stage.",
+            "E0815: a stage of the case has `strength_reduction`, and `bsmpm fos` reduces the strength again. Remove \
+             `strength_reduction` from the stage.",
         ),
         (
             !has_strength,
-            "E0816: no material yields and no interface has friction, so there is no strength to reduce. Use a \
-             plastic `model`, for example \"mohr-coulomb\".",
+            "E0816: no material has a yield strength and no interface has friction, so there is no strength to \
+             reduce. Use a plastic `model`, for example \"mohr-coulomb\".",
         ),
         (
             !is_loaded(case),
@@ -58,8 +58,8 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (
             has_amplitude,
-            "E0818: a load varies in time (`amplitude`), so the factor of safety would be that of its last value \
-             only. Use `ramp` instead, or choose a stage with `--stage NAME`.",
+            "E0818: a load varies in time (`amplitude`), but the factor of safety refers to its last value. Use \
+             `ramp` instead, or choose a stage at whose end the load is constant with `--stage NAME`.",
         ),
         (
             never_full,
@@ -73,13 +73,13 @@ pub(super) fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (
             until.is_none() && case.rigid.iter().any(Rigid::is_moved),
-            "E0821: a rigid body has a prescribed motion, so its support of the soil changes during the search. \
-             Remove the motion, or stop it at the end of a stage with `--stage NAME`.",
+            "E0821: a rigid body has a prescribed motion, so its support of the soil changes during a trial run. \
+             Remove the motion, or use `--stage NAME`, which stops it at the end of that stage.",
         ),
         (
             until.is_none() && is_moved(case),
-            "E0822: a displacement is prescribed, which soil of any strength can follow, so no trial would fail. Give \
-             a load instead, or stop the motion at the end of a stage with `--stage NAME`.",
+            "E0822: a displacement is prescribed, and soil of any strength follows it, so no trial run fails. Give a \
+             load instead, or use `--stage NAME`, which stops the motion at the end of that stage.",
         ),
     ];
     let found = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason.to_owned());

@@ -262,8 +262,8 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
     let [x, y, _] = trial.farthest;
     (trial.largest_displacement > DOUBLED * trial.displacement).then(|| {
         format!(
-            "W0801: in trial {} a few material points near ({x:.2}, {y:.2}) m moved {:.1} times as far as the soil \
-             around them. The search ignores these points. Check in ParaView that no soil fails there.",
+            "W0801: in trial {}, a few points near ({x:.2}, {y:.2}) m moved {:.1} times as far as the soil around \
+             them. The result ignores these points. Check in ParaView that no soil fails there.",
             trial.factor,
             trial.largest_displacement / trial.displacement
         )
@@ -274,8 +274,8 @@ fn loose_points(trial: &FosTrial) -> Option<String> {
 fn untrusted(trial: &FosTrial) -> Option<String> {
     (!trial.failed_indicators.is_empty()).then(|| {
         format!(
-            "W0802: quality indicators of the last stable trial ({}) are beyond their limits: {}. The result may be \
-             wrong by 10 % or more. Follow the advice in the log of this trial.",
+            "W0802: in the last stable trial ({}), quality indicators are beyond their limits: {}. The result may be \
+             wrong by 10 % or more. Follow the advice in the log of this trial (in `trials`).",
             trial.factor,
             trial.failed_indicators.join(", ")
         )
@@ -288,8 +288,8 @@ fn pulled_sides(mechanism: &Mechanism, sought: Sought) -> Option<String> {
     let sides: Vec<String> = mechanism.pulled.iter().map(side).collect();
     (!sides.is_empty()).then(|| {
         format!(
-            "W0803: the failure mechanism reaches a side of the grid that holds the soil by tension: {}. The {} may \
-             be too high. Move this side away, or set it to \"contact\".",
+            "W0803: the failure mechanism reaches sides of the grid that pull on the soil (tension): {}. The {} may \
+             be too high. Move such a side farther away, or set its boundary to \"contact\".",
             sides.join(", "),
             sought.name()
         )
@@ -308,8 +308,8 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
         ));
     } else if kink.is_none() && curve.has_branch() {
         notes.push(
-            "W0805: displacements do not grow linearly with the factor after failure. The factor of safety is only known \
-             to lie between the last stable and the first failed trial. Increase `analysis.steps`."
+            "W0805: the displacements of failed trials do not grow in a straight line with the factor. The factor of \
+             safety only lies between the last stable and the first failed trial. Increase `analysis.steps`."
                 .to_owned(),
         );
     }
@@ -317,22 +317,22 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
     if !isolated.is_empty() {
         let factors: Vec<String> = isolated.iter().map(f64::to_string).collect();
         notes.push(format!(
-            "W0806: no equilibrium was found in the trial(s) {}, although trials closer to failure are stable. The \
-             search ignores these trials. If there are several, increase `analysis.steps`.",
+            "W0806: no equilibrium was found in the trial(s) {}, but trials closer to failure are stable, so the \
+             solver failed. The result ignores these. If there are several, increase `analysis.steps`.",
             factors.join(", ")
         ));
     }
     let first = coarse.first_failed.and_then(|factor| rows.iter().find(|row| row.trial.factor == factor));
     if let Some(row) = first.filter(|row| row.verdict == Verdict::NoEquilibrium && row.growth <= DOUBLED) {
         notes.push(format!(
-            "W0807: the first failed trial ({}) stopped at only {:.2} times the elastic displacement, so perhaps the \
-             solver failed, not the soil. Increase `analysis.steps`.",
+            "W0807: the first failed trial ({}) stopped at {:.2} times the elastic displacement. Soil that fails \
+             moves farther, so perhaps the solver failed, not the soil. Increase `analysis.steps`.",
             row.trial.factor, row.growth
         ));
         if !subject.free_bodies.is_empty() {
             notes.push(format!(
-                "W0808: the soil hardly moved in the first failed trial, so perhaps a free rigid body failed, not the \
-                 soil: {}. Look at the trial, or replace the body by a [[traction]].",
+                "W0808: the soil hardly moved in the first failed trial, so perhaps it did not fail, but a free rigid \
+                 body did ({}). Check the motion of the body there, or replace the body by a [[traction]].",
                 subject.free_bodies.join(", ")
             ));
         }

@@ -64,8 +64,8 @@ pub(super) fn search(plan: SearchPlan, known: &mut Known<'_>) -> Result<FactorCu
     let elastic = known(ELASTIC).ok_or(Halt::Needs(ELASTIC))?;
     if !(elastic.whole && elastic.displacement.is_finite() && elastic.displacement > 0.0) {
         return Err(over(
-            "E0827: even with elastic soil the first trial (trials/0.out) finds no equilibrium, or the soil does not \
-             move. Check supports and loads, apply the loads with `ramp`, or use more steps."
+            "E0827: the first trial run (trials/0.out) has elastic soil, but finds no equilibrium or no displacement. \
+             Check supports and loads, apply the loads with `ramp`, or increase `analysis.steps`."
                 .to_owned(),
         ));
     }
@@ -75,8 +75,8 @@ pub(super) fn search(plan: SearchPlan, known: &mut Known<'_>) -> Result<FactorCu
     search.climb()?;
     if search.curve.crossing(DOUBLED).last_stable.is_none() {
         return Err(over(format!(
-            "E0828: the first trial already fails (with the {} {}), so no stable state was found. Reduce --from. If \
-             the solver failed, not the soil, increase `analysis.steps`.",
+            "E0828: the first trial run (with the {} {}) already fails, so no stable state was found. Reduce --from. \
+             If displacements in this run are small, increase `analysis.steps` instead.",
             plan.sought.value(),
             plan.from
         )));

@@ -28,7 +28,7 @@ const SMALL: f64 = 2e-3;
 const UNCHANGED: f64 = 1.01;
 /// What the factor of strength that falls with strain is.
 const SOFTENS: &str = "W0809: a material softens, so the result depends on the size of the cells and on the stiffness \
-                       of the soil. Repeat the search with other cells, and compare.";
+     of the soil. Repeat the analysis with another `grid.cell`, and use the smaller result.";
 /// The largest displacement of all points, as a case may record it.
 const QUANTITY: &str = "max-displacement";
 
@@ -126,8 +126,8 @@ impl Subject {
         if let Some(set) = set.iter().map(|set| set.trim_start()).find(|set| set.starts_with("strength_reduction")) {
             let key = set.split('=').next().unwrap_or(set).trim_end();
             let reason = format!(
-                "E0830: --set {key} conflicts with the search, which sets the strength reduction itself. Remove this \
-                 --set. For a stage, use --stage and --undrained."
+                "E0830: --set {key} changes the strength reduction, which `bsmpm fos` sets itself. Remove this --set. \
+                 Choose a stage with --stage, and undrained failure with --undrained."
             );
             return Err(Error::Usage { reason });
         }

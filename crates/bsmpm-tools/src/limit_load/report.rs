@@ -210,7 +210,7 @@ impl GridLoad {
             ),
             _ => format!(
                 "W0852: on cells of {cell} m the load on `{name}` falls by {:.1} % over the last quarter of the \
-                 displacement (limit: 1 %). Increase `analysis.steps`.",
+                 displacement (limit: 1 %), because the steps are too large. Increase `analysis.steps`.",
                 -changed
             ),
         };

@@ -48,8 +48,8 @@ impl SweepArguments {
                         two options."
                 )),
                 _ => usage(format!(
-                    "E0837: --quantity {FACTOR} replaces each run by a search, so it must be the only quantity, \
-                     without a time. Use a separate sweep for other quantities."
+                    "E0837: --quantity {FACTOR} needs several trial runs for each combination of values, so it must \
+                     be the only quantity, without @TIME. Use a separate sweep for other quantities."
                 )),
             };
         }

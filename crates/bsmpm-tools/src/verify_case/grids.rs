@@ -49,7 +49,7 @@ impl Grids {
         let ratios = [sizes[1] / sizes[0], sizes[2] / sizes[1]];
         if ratios.iter().any(|ratio| !(LEAST..=MOST).contains(ratio)) {
             let reason = format!(
-                "E0858: the sizes of cells {sizes:?} m are too close or too far apart: each must be {LEAST} to {MOST} \
+                "E0858: the cell sizes {sizes:?} m are too similar or too different. Each must be {LEAST} to {MOST} \
                  times the next smaller one. Change --cells or --ratio."
             );
             return Err(Error::Usage { reason });
@@ -76,8 +76,8 @@ impl VerifyArguments {
         }
         let [x, y] = &own.grid.axes[..] else {
             return usage(
-                "E0860: in 3-D the sizes of the cells cannot be chosen by a ratio. Give the three sizes with --cells, \
-                 such as 0.4,0.3,0.2."
+                "E0860: in 3-D the cell sizes are not chosen by a ratio, because the number of cells grows with its \
+                 third power. Give the three sizes with --cells, such as 0.4,0.3,0.2."
                     .to_owned(),
             );
         };
@@ -90,8 +90,8 @@ impl VerifyArguments {
         }
         if graded && self.ratio.fract() != 0.0 {
             return usage(format!(
-                "E0862: the grid has cells of several sizes, so --ratio must be a whole number, but is {}. Use a \
-                 whole number, or give sizes of equal cells with --cells.",
+                "E0862: --ratio must be a whole number, because the grid has cells of several sizes. The value is {}. \
+                 Use a whole number, or give sizes of equal cells with --cells.",
                 self.ratio
             ));
         }

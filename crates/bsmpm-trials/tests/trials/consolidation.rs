@@ -344,7 +344,7 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
         reported.push(scratch.mpirun(ranks, &["case.toml", "-o", name]).expect(0).stderr);
     }
     assert!(
-        reported[1].contains("pore pressures stay") && !reported[3].contains("pore pressures stay"),
+        reported[1].contains("keeps pore pressures constant") && !reported[3].contains("keeps pore pressures constant"),
         "{}",
         reported[0]
     );
@@ -364,7 +364,7 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
     );
     // Without drainage nothing leaves, and the pressures follow the strain.
     let sudden = |name: &str| tables[5].get(name).unwrap().last().copied().unwrap();
-    assert!(!reported[5].contains("pore pressures stay"), "{}", reported[5]);
+    assert!(!reported[5].contains("keeps pore pressures constant"), "{}", reported[5]);
     assert_eq!(sudden("water-outflow"), at(&tables[5], "water-outflow", until));
     assert!((sudden("excess-pressure") / left - 1.0).abs() > 1e-2, "{} {left}", sudden("excess-pressure"));
     scratch.write("case.toml", &case);

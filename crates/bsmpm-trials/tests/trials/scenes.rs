@@ -281,11 +281,11 @@ fn a_load_whose_points_leave_the_grid_is_reported_and_ends_the_run() {
         .replace("stress = [0.0, -1.0]", "stress = [0.0, 3e5]\nramp = 1.0");
     let scratch = Scratch::with_case(&case);
     let output = scratch.mpirun(2, &["case.toml", "-q"]);
-    assert!(output.stderr.contains("of its points have no soil"), "{output:#?}");
+    assert!(output.stderr.contains("of its points lie outside the soil"), "{output:#?}");
     output.expect(81);
     let manifest = manifest(&scratch.path("case.out"));
     let reason = manifest.failure.expect("the failure is kept").reason;
-    assert!(reason.contains("of its points have no soil") && manifest.summary.steps > 0, "{reason}");
+    assert!(reason.contains("of its points lie outside the soil") && manifest.summary.steps > 0, "{reason}");
 }
 
 #[test]

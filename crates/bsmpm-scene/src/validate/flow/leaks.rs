@@ -50,12 +50,12 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let [a, b, wet, dry] = [a, b, wet, dry].map(|material| &case.materials[material].name);
         report.warn(match ratio.is_infinite() {
             true => format!(
-                "W0533: `{a}` and `{b}` meet at {at:.3?} m: the pressure of `{wet}` also acts on two cells of the \
+                "W0533: `{a}` and `{b}` meet at {at:.3?} m, and the pressure of `{wet}` also acts on two cells of the \
                  undrained `{dry}`. Use at least 20 cells across `{dry}`."
             ),
             false => format!(
                 "W0534: `{a}` and `{b}` meet inside cells at {at:.3?} m with a permeability ratio of {ratio:.0}, so \
-                 the tighter soil leaks. Put a grid line at the interface, or use smaller cells."
+                 too much water passes the tighter soil. Put a grid line there, or use smaller cells."
             ),
         });
     }

@@ -30,9 +30,8 @@ const LARGE: f64 = 0.1;
 const ENOUGH: f64 = 1e-2;
 
 /// What a factor of safety leaves out.
-pub const HELD_WATER: &str = "W0548: pore pressures stay constant during the strength reduction, so the factor of \
-                              safety of soft clay may be too high. Compare it with the factor from `bsmpm fos \
-                              --undrained`.";
+pub const HELD_WATER: &str = "W0548: the strength reduction keeps pore pressures constant, so for a sudden failure of \
+     soft clay the factor of safety may be too high. Compare it with the factor from `bsmpm fos --undrained`.";
 
 /// Load over stiffness up to which ground one cell across was shown to be right; under 0.5 runs ended early.
 const SHOWN_NARROW: f64 = 0.2;
@@ -60,8 +59,8 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     let flows = matches!(case.analysis.kind, AnalysisType::Consolidation | AnalysisType::Dynamic);
     if let Some(analysis) = root.record("analysis").filter(|_| !flows) {
         let message = format!(
-            "E0502: type = \"{}\" does not compute pore-water flow, but a material has drainage = \"coupled\" or \
-             \"undrained\". Use \"consolidation\" or \"dynamic\", or change `drainage`.",
+            "E0502: type = \"{}\" does not compute excess pore pressures, but a material has drainage = \"coupled\" \
+             or \"undrained\". Use \"consolidation\" or \"dynamic\", or change `drainage`.",
             case.analysis.kind.word()
         );
         analysis.error("type", message, report);
@@ -89,7 +88,7 @@ fn narrow(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         let Some(entry) = retention.map(|of| of.curve.entry()).filter(|entry| NARROW * *entry < cell) else { continue };
         report.warn(format!(
             "W0540: material.{}.retention: the air-entry suction head, {entry:.2e} m, is 1/{:.0} of a cell (limit \
-             1/{NARROW}), so steps may fail. Use smaller cells, or a curve with air entry at about 0.1 cells.",
+             1/{NARROW}), so steps may fail. Use smaller cells, or an air-entry head near 0.1 cells.",
             named.name,
             cell / entry
         ));
@@ -108,7 +107,7 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let soft = case.solver.background < 0.5 * ENOUGH && case.analysis.regime == Regime::QuasiStatic;
     if is_loose && soft && load >= LARGE {
         report.warn(format!(
-            "W0541: solver.background: {:e} is too small for a load of {load:.2} times the oedometric stiffness: \
+            "W0541: solver.background: {:e} is too small for a load of {load:.2} times the oedometric stiffness, so \
              settlements may be 10 % wrong. Set `solver.background = {ENOUGH}`.",
             case.solver.background
         ));
@@ -117,8 +116,8 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     if averages && load > SHOWN_NARROW && case.grid.axes.iter().take(case.grid.dims() - 1).any(|axis| axis.cells() == 1)
     {
         report.warn(format!(
-            "W0542: grid: soil one cell wide may move sideways under a load of {load:.2} times its oedometric \
-             stiffness. Use two cells across the soil, or `stabilisation.method = \"none\"`."
+            "W0542: grid: the soil is one cell wide and may move sideways, because the load is {load:.2} times its \
+             oedometric stiffness. Use two cells across the soil, or `stabilisation.method = \"none\"`."
         ));
     }
 }
@@ -134,7 +133,7 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
         if case.grid.order == 3 && few(body) {
             let message = format!(
-                "E0542: {} material points along each axis of a cell are too few for cubic splines: the pore \
+                "E0542: {} material points along each axis of a cell are too few for cubic splines, so the pore \
                  pressure would oscillate. Use at least {POINTS_OF_CUBIC}, or grid.degree = \"quadratic\".",
                 body.points_per_cell
             );
@@ -182,9 +181,7 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
 
 /// Message of what cannot be combined with flowing water, with an instruction what to do instead.
 fn not_available(what: &str, instead: &str) -> String {
-    format!(
-        "E0540: {what} is not available with pore-water flow (`drainage` is \"coupled\" or \"undrained\"). {instead}"
-    )
+    format!("E0540: {what} is not available if a material has drainage = \"coupled\" or \"undrained\". {instead}")
 }
 
 /// What a stage changes.
@@ -274,9 +271,8 @@ fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) 
         if acts && matches!(of.site, DrainSite::Lines(_) | DrainSite::Plate(_)) && places(of, case).iter().all(is_gone)
         {
             report.warn(format!(
-                "W0546: stage.{number}.remove: drain.{drain} lies on the removed soil and ends with it, so the new \
-                 surface is impermeable. Add a [[drain]] along the new surface, and list it in `activate` of this \
-                 stage."
+                "W0546: stage.{number}.remove: drain.{drain} is removed with its soil, so the new surface is \
+                 impermeable. Add a [[drain]] along the new surface, and list it in `activate` of this stage."
             ));
         }
     }
@@ -354,9 +350,8 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
     if reduction.gives("stage") && flow.at_rest == Motion::Held && !unloaded {
         report.warn(HELD_WATER);
     } else if !reduction.gives("stage") {
-        let message = "E0543: with pore-water flow the strength cannot be reduced from the start of the analysis. \
-                       Set `stage = \"end\"`: the pore pressures of that time then stay constant (`bsmpm fos --stage \
-                       end`).";
+        let message = "E0543: a strength reduction from the start would mix consolidation and failure. Set `stage = \
+             \"end\"` (`bsmpm fos --stage end`), which reduces the strength after the consolidation.";
         report.error(reduction.origin, &reduction.path, message);
     }
 }
@@ -365,8 +360,8 @@ fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
 fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
     if let Some((growth, _)) = case.analysis.growth.filter(|(growth, _)| *growth > MOST_GROWTH) {
         report.warn(format!(
-            "W0549: analysis.growth: steps that grow by a factor of {growth} (limit {MOST_GROWTH}) become \
-             inaccurate, and consolidation overshoots. Set `growth` to {MOST_GROWTH} or less."
+            "W0549: analysis.growth: steps that grow by a factor of {growth} (limit {MOST_GROWTH}) become inaccurate, \
+             and settlements exceed their final value. Set `growth` to {MOST_GROWTH} or less."
         ));
     }
     let alike = case.analysis.growth.is_none() && root.record("analysis").is_some_and(|record| record.gives("dt_max"));
@@ -382,8 +377,8 @@ fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
 fn weighed(case: &Case, report: &mut Report<'_>) {
     if case.gravity.is_some() && case.water.is_none() {
         report.warn(
-            "W0551: water: the case has gravity but no water table, so the pore pressure is zero at the start and \
-             only builds up in time. Give `water.level`.",
+            "W0551: water: the case has gravity but no water table, so pore pressures are zero at the start, and the \
+             hydrostatic pressure builds up in time like an excess pressure. Give `water.level`.",
         );
     }
 }
@@ -409,8 +404,8 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     for (number, drain) in flow.drains.iter().enumerate().filter(|(_, drain)| drain.given == Given::StillWater) {
         if height > FILM && places(drain, case).iter().any(dry) {
             report.warn(format!(
-                "W0552: drain.{number}: above the water table this drain acts like a pond: a water layer of up to \
-                 {height:.1} cells enters the soil {period}. Set `seepage = true`, or give the `head` of the pond."
+                "W0552: drain.{number}: above the water table soil suction draws water from this drain, a layer up to \
+                 {height:.1} cells high {period}. Set `seepage = true`, or for a pond give its `head`."
             ));
         }
     }

@@ -88,8 +88,8 @@ pub(super) fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Repo
         let (low, high) = (&lower[..axes], &upper[..axes]);
         if (0..axes).any(|axis| lower[axis] >= upper[axis]) {
             let message = format!(
-                "E0651: the box is empty: along each axis `upper` = {high:?} must be larger than `lower` = {low:?}. \
-                 Correct `upper` or `lower`."
+                "E0651: the box is empty, because along each axis `upper` = {high:?} must be larger than `lower` = \
+                 {low:?}. Correct `upper` or `lower`."
             );
             record.error("upper", message, report);
         }

@@ -311,8 +311,8 @@ fn end(
         }
         None if outward.abs() < cell => {
             let message = format!(
-                "E0235: the segment of {} m is shorter than a cell ({cell} m) and ends inside a cell, so it would \
-                 move or hold the whole cell. Use smaller cells, or put a grid line at {} = {} m.",
+                "E0235: the segment of {} m is shorter than a cell ({cell} m) and ends inside it, so it would move or \
+                 fix the whole cell. Use smaller cells, or put a grid line at {} = {} m.",
                 outward.abs(),
                 NAMES[along],
                 at[along]

@@ -150,8 +150,8 @@ fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, re
         let limit = 1.5 * 0.5 * young.at(y) / (1.0 + poisson);
         if rate > limit {
             report.warn(format!(
-                "W0305: {}: the cohesion falls by {rate:.3e} Pa per unit of plastic strain (limit {limit:.3e} Pa), \
-                 so it is lost all at once. Use smaller cells, or a larger `softening_strain`.",
+                "W0305: {}: the cohesion falls by {rate:.3e} Pa per unit of plastic strain (limit {limit:.3e} Pa), so \
+                 it is lost all at once. Increase `softening_strain`, or (with `band_width`) use smaller cells.",
                 record.path
             ));
             return;
@@ -214,8 +214,8 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     let [kappa, lambda] = ["kappa_star", "lambda_star"].map(|key| law.of(key).value);
     if lambda <= kappa {
         let message = format!(
-            "E0307: the slope of the normal compression line (lambda_star = {lambda}) must exceed the slope of \
-             unloading (kappa_star = {kappa}). Correct `lambda_star` or `kappa_star`."
+            "E0307: the slope of the normal compression line (lambda_star = {lambda}) must exceed the slope of the \
+             unloading line (kappa_star = {kappa}). Correct `lambda_star` or `kappa_star`."
         );
         record.error("lambda_star", message, report);
         return None;
@@ -265,7 +265,7 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
         }
         report.warn(format!(
             "W0307: {}: this material softens, and shear bands are always two cells wide, so results depend on the \
-             cell size. Add `band_width`, or compare the results of two cell sizes.",
+             cell size. Add `band_width` (real width of a band), or compare two cell sizes.",
             record.path
         ));
         return Some(());
@@ -278,7 +278,7 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
     if longest > SQUARE * shortest {
         let message = format!(
             "E0316: `band_width` needs cells of equal size, but the cells of the grid are {shortest} to {longest} m \
-             long. Give `grid.cell` one number."
+             long. Set `grid.cell` to one number, or remove `band_width`."
         );
         record.error("band_width", message, report);
         return None;
@@ -358,8 +358,8 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi
     // until it has closed, and without friction there is no apex.
     if record.word("separation") == Some(Separation::Closing) && (friction.0 <= 0.0 || cohesion.1 > 0.0) {
-        let message = "E0317: separation = \"gap\" needs a friction angle above 0 and zero cohesion, because a gap \
-                       opens only at zero stress. Correct `friction_angle` and `cohesion`, or remove `separation`.";
+        let message = "E0317: separation = \"gap\" needs a friction angle above 0 and zero cohesion, because only \
+             such soil opens without tension. Correct `friction_angle` and `cohesion`, or remove `separation`.";
         record.error("separation", message, report);
     }
     Some(())

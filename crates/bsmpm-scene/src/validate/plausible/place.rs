@@ -45,8 +45,8 @@ pub(super) fn histories(case: &Case, root: &Record, report: &mut Report<'_>) {
             continue;
         }
         report.warn(format!(
-            "W0106: {}: no body is within a cell ({reach:.2} m) of the place {:?} m. The history would follow the \
-             nearest material point, which is elsewhere. Move `at` into a body.",
+            "W0106: {}: no body is within a cell ({reach:.2} m) of the place {:?} m. The history records the nearest \
+             material point, which is at another place. Move `at` into a body.",
             record.path_of("at"),
             &at[..case.grid.dims()]
         ));

@@ -29,7 +29,7 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
         if steepest > friction + EXCESS {
             report.warn(format!(
                 "W0111: {}: the slope of {steepest:.1} degrees is steeper than the friction angle of material.{name} \
-                 ({friction:.1}), which has no cohesion, so it fails. Make it flatter, or increase `cohesion`.",
+                 ({friction:.1}), so it fails without cohesion. Flatten the slope, or increase `cohesion`.",
                 record.path
             ));
             return;

@@ -49,8 +49,8 @@ fn warn(root: &Record, piece: &[usize], free: &[&str], stage: Option<&Stage>, re
     let names: Vec<String> = piece.iter().map(named).collect();
     let since = stage.map_or(String::new(), |stage| format!(" from t = {} on", stage.at));
     report.warn(format!(
-        "W0107: neither a support nor another body holds {} along {}{since}, so a quasi-static analysis has no \
-         solution. Move the body onto another one, support the body, or use type = \"dynamic\".",
+        "W0107: nothing restrains {} along {}{since}, so a quasi-static analysis has no solution. Move the body onto \
+         another one, support the body, or use type = \"dynamic\".",
         listed(&names),
         free.join(" and ")
     ));

@@ -20,7 +20,7 @@ pub(super) fn check(case: &Case, rigid: &Rigid, record: &Record, report: &mut Re
     } else if let Some((face, distance)) = touched(case, rigid) {
         report.warn(format!(
             "W0418: {key}: the rigid body, {distance:.3} m from boundary `{}`, moves out of the grid, because \
-             boundaries stop only soil. Enlarge the grid on this side.",
+             boundaries stop soil, but not rigid bodies. Enlarge the grid on this side.",
             face.side(case.geometry)
         ));
     } else if rigid.free.contains(&true)

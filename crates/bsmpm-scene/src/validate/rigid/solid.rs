@@ -92,7 +92,8 @@ fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
     let RigidShape::Polygon(mut corners) = super::shape::rigid(shape, report)? else {
         shape.error(
             "circle",
-            "E0432: a circle cannot be revolved into a rigid body. Use `polygon`, or `sphere`.",
+            "E0432: `revolve` needs a polygon, but this shape is a circle. Use `polygon`, or replace `revolve` by \
+             `sphere`.",
             report,
         );
         return None;

@@ -46,8 +46,8 @@ pub(super) fn region(
         Ok(volume) => {
             if (volume.scale() - 1.0).abs() > SCALED {
                 report.warn(format!(
-                    "W0214: {}: the body is so thin that its volume in cells at its surface had to be scaled by \
-                     {:.2}. Stresses in these cells are inaccurate. Use cells of at most five times the thickness.",
+                    "W0214: {}: the body is too thin for the cells, so its volume in surface cells was scaled by \
+                     {:.2}. Stresses there are inaccurate. Use cells of at most five times the thickness.",
                     body.path_of(key),
                     volume.scale()
                 ));

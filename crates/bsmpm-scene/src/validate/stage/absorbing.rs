@@ -25,8 +25,8 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
     if stage.strength_reduction.is_some() {
         refuse(
             "strength_reduction",
-            "E0627: a stage cannot reduce the strength in a case with absorbing boundaries, because these need ground \
-             at rest. Make the absorbing boundaries \"fixed\".",
+            "E0627: with absorbing boundaries a stage needs ground at rest, but reduced strength can set the ground \
+             in motion. Make the absorbing boundaries \"fixed\".",
         );
     }
     if case.is_ever(Support::Contact) || !case.rigid.is_empty() {
@@ -64,8 +64,8 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
             let bodies = if key == "add" { &stage.add } else { &stage.remove };
             if bodies.iter().any(is_in) {
                 let message = format!(
-                    "E0628: this body lies in the cells next to the free-field boundary `{}`, which a stage cannot \
-                     change. Keep the body one cell away from the boundary.",
+                    "E0628: this body, which a stage changes, lies in the cells next to the free-field boundary `{}`, \
+                     where stages may change nothing. Keep the body one cell away from the boundary.",
                     of.face.side(case.geometry).word()
                 );
                 refuse(key, &message);
@@ -74,8 +74,8 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
         if !stage.materials.is_empty() {
             refuse(
                 "materials",
-                "E0628: a stage cannot change materials if a side is \"free-field\", because the free field keeps its \
-                 materials. Make the side \"fixed\" or \"roller\".",
+                "E0628: a stage cannot change materials if a side is \"free-field\", because the soil column of the \
+                 free field keeps its materials. Make the side \"fixed\" or \"roller\".",
             );
         }
         if stage.faces.iter().any(|of| of.face.axis == 0) {
