@@ -205,8 +205,8 @@ pub enum StepError {
     },
     /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
     #[error(
-        "E0753: kinetic, elastic and dissipated energy together exceed the initial energy plus external work \
-         ({given:.3e} J) by {:.1} % of the peak energy (limit: {:.0} %), so energy was created.", 100.0 * growth, 100.0 * slack
+        "E0753: energy was created: kinetic, elastic and dissipated energy exceed the initial energy plus external \
+         work ({given:.3e} J) by {:.1} % of the peak energy (limit: {:.0} %).", 100.0 * growth, 100.0 * slack
     )]
     EnergyMade {
         /// Largest excess over the largest energy.

@@ -30,8 +30,8 @@ pub(super) fn of(name: &str, case: &Case, value: f64) -> String {
 const NOISE_ABOUT_AVERAGE: &str = "I0001: the pressures of neighbouring material points scatter by {value} of \
     their mean ({range}). \
     Do not use stresses of single points. {remedy}";
-const NOISE_ABOUT_PLANE: &str = "I0002: the pressures of neighbouring material points scatter by {value} of their \
-    mean about a linear trend in space ({range}). Do not use stresses of single points. {remedy}";
+const NOISE_ABOUT_PLANE: &str = "I0002: the pressures of neighbouring material points differ from a linear trend by \
+     {value} of their mean ({range}). Do not use stresses of single points. {remedy}";
 const ENERGY_MADE: &str = "I0012: numerical dissipation is {value} of the peak energy ({range}). The algorithm \
     adds energy to the motion. Reduce `analysis.dt`.";
 const GROWTH: &str = "I0013: the algorithm has created {value} of the peak energy ({range}). The computed motion is \
@@ -126,8 +126,8 @@ fn constant(name: &str, case: &Case) -> &'static str {
              Stresses are wrong by about as much. Increase `body.points_per_cell`."
         }
         "quadrature-defect-largest" => {
-            "I0004: in a full cell the volume of the material points differs by {value} from that of the cell \
-             ({range}). Stress in this cell is wrong by about as much. Increase `body.points_per_cell`."
+            "I0004: in the worst of the full cells the volume of the material points is wrong by {value} ({range}). \
+             Stress in this cell is wrong by about as much. Increase `body.points_per_cell`."
         }
         "points-per-cell" => {
             "I0005: full cells have {value} material points on average ({range}). The integration is too coarse, \
@@ -183,12 +183,12 @@ fn constant(name: &str, case: &Case) -> &'static str {
              ({range}). The force is too small. Increase `analysis.steps`, or use smaller cells there."
         }
         "support-pull" => {
-            "I0016: tension at a boundary is {value} of the largest reaction ({range}). This is right at a plane of \
-             symmetry only. If the soil should separate there, set `\"contact\"` in `[boundary]`."
+            "I0016: a boundary pulls on the soil with {value} of the largest reaction ({range}). Only a plane of \
+             symmetry may do so. Set any other side of `[boundary]` to `\"contact\"`."
         }
         "front-setback" => {
-            "I0017: the measured front moved back by {value} ({range}). A tip thinner than half a cell is ignored, so \
-             it is not the run-out. Use smaller cells, or a history with `quantity = \"runout\"`."
+            "I0017: the measured front moved back by {value} ({range}), because it ignores a tip thinner than half a \
+             cell. Do not take it as the run-out. Use smaller cells, or a history with `quantity = \"runout\"`."
         }
         "step-advance" => {
             "I0018: a material point moved by {value} in one step ({range}). The positions of fronts and contacts \
@@ -233,8 +233,8 @@ fn constant(name: &str, case: &Case) -> &'static str {
              Displacements there grow in every step, which is wrong. Increase `body.points_per_cell`."
         }
         "stiffness-loss" => {
-            "I0027: {which}. The elastic stiffness of the soil is {value} times its actual stiffness ({range}). \
-             Displacements after failure are not reliable. Reduce the load, or use `bsmpm fos`."
+            "I0027: {which}: the elastic stiffness is {value} times the tangent stiffness ({range}). Do not use \
+             displacements after failure. Reduce the load, or use `bsmpm fos`."
         }
         "background-work" => {
             "I0028: the artificial stiffness of nearly empty cells does {value} of the internal work of the soil \

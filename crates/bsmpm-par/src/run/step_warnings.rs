@@ -147,8 +147,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
             if self.warned_strips.insert(of_strips + points.len() + number) {
                 self.warn(format!(
-                    "W0709: `{name}`: the soil separated by {:.1} cells at t = {t}. The new surface does not drain, \
-                     which delays consolidation. For the other bound, run `drainage = \"hydrostatic\"`.",
+                    "W0709: `{name}`: a gap of {:.1} cells opened in the soil at t = {t}. Its faces do not drain, so \
+                     consolidation is too slow. To see the effect, compare a run with `drainage = \"hydrostatic\"`.",
                     water.torn[number]
                 ));
             }

@@ -21,14 +21,14 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         let held = holds_at_rest(case, axis, None);
         for what in loads(case, axis).filter(|_| !held).chain(rigid(case, root, axis)) {
             report.warn(format!(
-                "W0231: {what}: the load remains at the end, and along {name} only absorbing boundaries, which have \
-                 no stiffness, support the ground. The ground drifts. Fix a distant face, or end the load at 0."
+                "W0231: {what}: the load remains at the end, so the ground drifts along {name}, where only absorbing \
+                 boundaries (without stiffness) support it. Fix a distant face, or end the load at 0."
             ));
         }
         for what in strips(case, axis) {
             report.warn(format!(
-                "W0231: {what}: the motion does not return to 0, and along {name} only absorbing boundaries (no \
-                 stiffness) support the ground. The ground drifts. Fix a distant face, or end the motion at 0."
+                "W0231: {what}: the motion does not return to 0, so the ground drifts along {name}, where only \
+                 absorbing boundaries (without stiffness) support it. Fix a distant face, or end the motion at 0."
             ));
         }
     }

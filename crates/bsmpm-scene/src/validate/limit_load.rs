@@ -139,8 +139,8 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
     let follows_strain = |material: &Material| material.softens() || material.hardens() || !material.is_linear();
     if let Some(named) = case.materials.iter().find(|named| follows_strain(&named.material)) {
         let message = format!(
-            "E0446: the strength or stiffness of material `{}` changes with strain, so the limit load would depend on \
-             the displacement. Use a model with constant parameters, or delete `purpose`.",
+            "E0446: the strength or stiffness of material `{}` changes with strain, so it has no unique limit load. \
+             Use a model with constant parameters, or delete `purpose` (then no limit load is computed).",
             named.name
         );
         analysis.error(KEY, message, report);

@@ -64,12 +64,12 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
         let place = place_of(case, *axis, *line);
         report.warn(match chosen {
             C0Lines::None => format!(
-                "W0216: {reason}, at {place}. No C0 line (a grid line at which strains may jump) is there. Stresses \
-                 within three cells can be off by tens of per cent. Set grid.c0_lines = \"automatic\"."
+                "W0216: {reason}, at {place}. Without a C0 line the grid smooths this, so stresses within three cells \
+                 can be off by tens of per cent. Set grid.c0_lines = \"automatic\"."
             ),
             C0Lines::Automatic => format!(
-                "W0217: {reason}, at {place}. No C0 line (where strains may jump) is put there, because pore water \
-                 flows. Stresses nearby can be off by tens of per cent. Use smaller cells there."
+                "W0217: {reason}, at {place}. In an analysis with pore-water flow the grid smooths this, so stresses \
+                 nearby can be off by tens of per cent. Use smaller cells there."
             ),
         });
     }

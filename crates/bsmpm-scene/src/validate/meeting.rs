@@ -118,8 +118,8 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
         }
         Other::Strip { along, edge, .. } if along > ALONG * edge => {
             let message = format!(
-                "E0251: `{name}` and `{other}` are adjacent, and one of the two moves {along:.3} m along its surface \
-                 (at most {:.3} m). The soil cannot follow both. Leave a cell between the two.",
+                "E0251: `{name}` and `{other}` are adjacent, and one of them slides {along:.3} m along its surface \
+                 (at most {:.3} m), which the soil next to both cannot follow. Leave a cell between the two.",
                 ALONG * edge
             );
             record.error("from", message, report);

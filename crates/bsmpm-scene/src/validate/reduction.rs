@@ -123,8 +123,8 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
     let changed =
         [("elastic", table.flag("elastic") == Some(true)), ("stiffness", table.number("stiffness") != Some(1.0))];
     for (key, _) in changed.into_iter().filter(|(_, changed)| *changed && !unloaded) {
-        let message = "E0638: this key changes the stiffness from the first step on, so the consolidation before the \
-             strength reduction would be wrong. Remove this key, or set unloaded = true (start without stress).";
+        let message = "E0638: this key changes the stiffness in all steps, also in the consolidation before the \
+             strength reduction, which would be wrong. Remove it, or set unloaded = true (start without stress).";
         table.error(key, message, report);
     }
 }

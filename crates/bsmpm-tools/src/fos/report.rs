@@ -331,8 +331,8 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
         ));
         if !subject.free_bodies.is_empty() {
             notes.push(format!(
-                "W0808: the soil hardly moved in the first failed trial, so perhaps it did not fail, but a free rigid \
-                 body did ({}). Check the motion of the body there, or replace the body by a [[traction]].",
+                "W0808: in the first failed trial the soil hardly moved. Perhaps only a free rigid body moved away, \
+                 and the soil did not fail ({}). Check how this body moves, or replace it by a [[traction]].",
                 subject.free_bodies.join(", ")
             ));
         }

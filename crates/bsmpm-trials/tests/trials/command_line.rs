@@ -89,7 +89,7 @@ fn check_prints_the_sizes_once_and_writes_nothing() {
 #[test]
 fn a_case_that_needs_more_memory_than_allowed_is_refused_once_with_71() {
     let scratch = Scratch::with_case(COLUMN);
-    scratch.mpirun(2, &["case.toml", "--max-memory", "10kB"]).expect(71).says_once("--max-memory");
+    scratch.mpirun(2, &["case.toml", "--max-memory", "10kB"]).expect(71).says_once("or increase `--max-memory`.");
     assert_eq!(scratch.entries(), ["case.toml"]);
     scratch.mpirun(2, &["case.toml", "--max-memory", "1GiB", "-q"]).expect(0);
 }

@@ -172,7 +172,7 @@ fn motions_that_the_rule_does_not_cover_are_refused_by_name() {
     let scratch = Scratch::with_case(&changed(TRAPDOOR, "CELL", "0.25"));
     let sideways = "prescribed.0.path=[[0.2, 0.0, 0.0], [1.0, 0.3, -0.02]]";
     let output = scratch.direct(&["case.toml", "--check", "--set", sideways]).expect(65);
-    output.says_once("`prescribed.0` and `prescribed.1` are adjacent, and one of the two moves");
+    output.says_once("`prescribed.0` and `prescribed.1` are adjacent, and one of them slides");
     // Both hold the soil along the plane: a strip that slides by 0.04 cells had up to twice its limit load, one that
     // slides by 0.16 cells a hundred times as much.
     let rough = changed(&changed(TRAPDOOR, "CELL", "0.25"), "components = \"normal\"\n", "");

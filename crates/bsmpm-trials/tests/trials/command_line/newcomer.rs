@@ -75,7 +75,8 @@ fn an_output_directory_that_cannot_be_made_is_named_with_the_remedy() {
     scratch.write("file", "");
     for directory in ["file/below", "/proc/run"] {
         let output = scratch.direct(&["case.toml", "-o", directory]).expect(73);
-        output.says_once(&format!("error E0767: the system cannot create the output directory `{directory}`"));
+        output
+            .says_once(&format!("error E0767: the operating system cannot create the output directory `{directory}`"));
         output.says_once("Choose another directory with `-o`.");
     }
 }
