@@ -27,11 +27,10 @@ pub(super) fn of(name: &str, case: &Case, value: f64) -> String {
     }
 }
 
-const NOISE_ABOUT_AVERAGE: &str = "I0001: the pressures of neighbouring material points scatter by {value} of \
-    their mean ({range}). \
-    Do not use stresses of single points. {remedy}";
-const NOISE_ABOUT_PLANE: &str = "I0002: the pressures of neighbouring material points differ from a linear trend by \
-     {value} of their mean ({range}). Do not use stresses of single points. {remedy}";
+const NOISE_ABOUT_AVERAGE: &str = "I0001: the mean stresses of neighbouring material points scatter by {value} of \
+     their average ({range}). Do not use stresses of single points. {remedy}";
+const NOISE_ABOUT_PLANE: &str = "I0002: the mean stresses of neighbouring material points differ from a linear trend \
+     by {value} of their average ({range}). Do not use stresses of single points. {remedy}";
 const ENERGY_MADE: &str = "I0012: numerical dissipation is {value} of the peak energy ({range}). The algorithm \
     adds energy to the motion. Reduce `analysis.dt`.";
 const GROWTH: &str = "I0013: the algorithm has created {value} of the peak energy ({range}). The computed motion is \
@@ -126,8 +125,8 @@ fn constant(name: &str, case: &Case) -> &'static str {
              Stresses are wrong by about as much. Increase `body.points_per_cell`."
         }
         "quadrature-defect-largest" => {
-            "I0004: in the worst of the full cells the volume of the material points is wrong by {value} ({range}). \
-             Stress in this cell is wrong by about as much. Increase `body.points_per_cell`."
+            "I0004: in a cell full of soil, the volumes of the material points differ from the volume of the cell by \
+             {value} ({range}), and so does the stress there. Increase `body.points_per_cell`."
         }
         "points-per-cell" => {
             "I0005: full cells have {value} material points on average ({range}). The integration is too coarse, \
@@ -183,8 +182,8 @@ fn constant(name: &str, case: &Case) -> &'static str {
              ({range}). The force is too small. Increase `analysis.steps`, or use smaller cells there."
         }
         "support-pull" => {
-            "I0016: a boundary pulls on the soil with {value} of the largest reaction ({range}). Only a plane of \
-             symmetry may do so. Set any other side of `[boundary]` to `\"contact\"`."
+            "I0016: a boundary holds soil in tension, with {value} of the largest reaction ({range}). Only a plane of \
+             symmetry may do so. Set a side that is none to `\"contact\"` in `[boundary]`."
         }
         "front-setback" => {
             "I0017: the measured front moved back by {value} ({range}), because it ignores a tip thinner than half a \
@@ -225,12 +224,12 @@ fn constant(name: &str, case: &Case) -> &'static str {
              or use smaller cells where it acts."
         }
         "background-load-share" if case.solver.extended_splines == ExtendedSplines::Off => {
-            "I0026: artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
-             Displacements there grow in every step, which is wrong. Remove `solver.extension`."
+            "I0026: only an artificial stiffness supports nearly empty cells, with {value} of the nodal forces \
+             ({range}). It gives way in every step, so soil there moves too far. Remove `solver.extension`."
         }
         "background-load-share" => {
-            "I0026: artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). \
-             Displacements there grow in every step, which is wrong. Increase `body.points_per_cell`."
+            "I0026: only an artificial stiffness supports nearly empty cells, with {value} of the nodal forces \
+             ({range}). It gives way in every step, so soil there moves too far. Increase `body.points_per_cell`."
         }
         "stiffness-loss" => {
             "I0027: {which}: the elastic stiffness is {value} times the tangent stiffness ({range}). Do not use \

@@ -147,8 +147,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
             if self.warned_strips.insert(of_strips + points.len() + number) {
                 self.warn(format!(
-                    "W0709: `{name}`: a gap of {:.1} cells opened in the soil at t = {t}. Its faces do not drain, so \
-                     consolidation is too slow. To see the effect, compare a run with `drainage = \"hydrostatic\"`.",
+                    "W0709: `{name}` does not drain the faces of a gap of {:.1} cells that opened in the soil at t = \
+                     {t}, so consolidation is too slow. To see the effect, compare a run with `drainage = \
+                     \"hydrostatic\"`.",
                     water.torn[number]
                 ));
             }

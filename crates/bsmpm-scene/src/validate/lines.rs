@@ -77,8 +77,8 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     let jumps = crossed.or(placed.first().map(|(place, _)| *place));
     if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, record)) {
         report.warn(format!(
-            "W0218: the undrained strength of material.{name} depends on the mean stress, which is inaccurate near \
-             the grid line {}. Loads can be off by 4 %. Compare a run with model = \"tresca\".",
+            "W0218: the undrained strength of material.{name} depends on the mean stress, which is inaccurate at {} \
+             (end of a load, or interface). Loads can be off by 4 %. Compare a run with model = \"tresca\".",
             place_of(case, axis, line)
         ));
     }
@@ -226,8 +226,9 @@ fn doubt(
         let denser = || {
             format!(
                 "W0221: the density of material.{a} and material.{b} differs by a factor of {}. Stresses in the cells \
-                 next to their interface at {at:.3?} m are inaccurate. Use smaller cells at the interface.",
-                brief(densities)
+                 next to their interface at {} are inaccurate. Use smaller cells at the interface.",
+                brief(densities),
+                coordinates(at)
             )
         };
         return match yields && moduli > SHOWN {
@@ -242,6 +243,13 @@ fn doubt(
         )
     };
     (moduli.max(densities) >= UNLIKE).then(unfitted)
+}
+
+/// The coordinates of a place in words.
+fn coordinates(at: &[f64]) -> String {
+    let named = |(axis, value): (&str, &f64)| format!("{axis} = {value:.3} m");
+    let all: Vec<String> = ["x", "y", "z"].into_iter().zip(at).map(named).collect();
+    all.join(", ")
 }
 
 /// An interface: a place on it, the materials on both sides, the ratios of their moduli and densities.

@@ -301,7 +301,8 @@ fn a_side_in_tension_that_holds_a_mechanism_back_is_named() {
     assert!(estimate(&held) > 1.05 * estimate(&released), "{held} {released}");
     assert_eq!(held["mechanism"]["pulled"][0]["side"], "left", "{held}");
     assert!(
-        held["notes"].to_string().contains("W0803: ") && held["notes"].to_string().contains("by tension: left"),
+        held["notes"].to_string().contains("W0803: ")
+            && held["notes"].to_string().contains("pull on the soil (tension): left"),
         "{held}"
     );
     assert!(!released["notes"].to_string().contains("W0803"), "{released}");

@@ -62,7 +62,7 @@ fn a_fault_that_cannot_be_read_or_cannot_happen_is_refused() {
     for fault in wrong {
         let scratch = Scratch::with_case(COLUMN);
         let output = with_fault(&scratch, Some(2), fault).expect(2);
-        output.says_once("BSMPM_FAULT");
+        output.says_once("error E0709: BSMPM_FAULT");
         assert_eq!(scratch.entries(), ["case.toml"], "{fault}");
     }
     let scratch = Scratch::with_case(COLUMN);
