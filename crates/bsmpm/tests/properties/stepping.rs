@@ -140,7 +140,7 @@ fn a_grid_that_empties_through_its_outlets_ends_the_run_and_says_so() {
     let failure = run(&mut scene, &Schedule::new(1.0 / 64.0, 2.0, []), 0).unwrap_err();
     let last = failure.attempts.last().expect("an attempt");
     assert!(matches!(last, StepError::Emptied { count: 4 }), "{failure:?}");
-    assert!(last.to_string().contains("no material would be left"), "{last}");
+    assert!(last.to_string().contains("no material is left"), "{last}");
     assert!((failure.t - 0.875).abs() < 1e-3 && scene.points.len() == 4, "{}", failure.t);
 }
 
