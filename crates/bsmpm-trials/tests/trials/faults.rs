@@ -66,7 +66,7 @@ fn a_fault_that_cannot_be_read_or_cannot_happen_is_refused() {
         assert_eq!(scratch.entries(), ["case.toml"], "{fault}");
     }
     let scratch = Scratch::with_case(COLUMN);
-    with_fault(&scratch, Some(2), "panic:rank=2,step=1").expect(2).says_once("BSMPM_FAULT");
+    with_fault(&scratch, Some(2), "panic:rank=2,step=1").expect(2).says_once("error E0708: BSMPM_FAULT");
 }
 
 /// What a failed run must have left, whatever the reason.
