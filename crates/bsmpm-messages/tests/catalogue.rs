@@ -12,7 +12,7 @@ const LONGEST: usize = 200;
 /// Characters that a name or number in a text has on average.
 const PLACEHOLDER: usize = 8;
 /// Characters below which a text is no sentence: its words must stand behind the code, not in a variable.
-const SHORTEST: usize = 16;
+const SHORTEST: usize = 20;
 /// Codes of texts that end with a placeholder for a full stop or for `; did you mean ...?`.
 const ENDED_BY_A_HINT: [&str; 3] = ["E0017", "E0020", "E0518"];
 

@@ -279,10 +279,14 @@ fn missing(key: &Key) -> String {
     let is_named = |key: &&Key| matches!(key.presence, Presence::Required) && !FILLED.contains(&key.name);
     let required = table.keys.iter().filter(is_named);
     let groups = table.exclusive.iter().filter(|group| group.required);
-    let one_of =
-        |group: &Group| group.keys.iter().take(2).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or ");
-    let names: Vec<String> = required.map(|key| format!("`{}`", key.name)).chain(groups.map(one_of)).collect();
+    let names: Vec<String> = required.map(|key| format!("`{}`", key.name)).chain(groups.map(first_two)).collect();
     format!("E0052: the table {} is missing. Add this table with the keys {}.", table.header, names.join(" and "))
+}
+
+/// Two keys of a group as examples of it.
+fn first_two(group: &Group) -> String {
+    let names: Vec<String> = group.keys.iter().take(2).map(|name| format!("`{name}`")).collect();
+    names.join(" or ")
 }
 
 impl Record {

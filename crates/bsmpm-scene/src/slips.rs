@@ -106,7 +106,7 @@ impl Mender<'_, '_> {
         node.value = Value::List(vec![item]);
     }
 
-    /// `[material]` for `[material.NAME]`: the table gets the name that is sought, or a name of its own.
+    /// `[material]` for `[material.NAME]`: the table gets the name `soil`, so that its values are checked as well.
     fn name_single_table(&mut self, node: &mut Node, table: &Table, path: &str) {
         let Value::Table(written) = &mut node.value else { return };
         let is_key =
@@ -188,15 +188,15 @@ fn unknown_key(root: &'static Table, table: &'static Table, key: &str) -> String
     if let Some(answer) = answer(table, key) {
         return match code_of(answer) {
             Some(_) => answer.to_owned(),
-            None => format!("E0011: `{}` is not a known key of {}. {answer}", shortened(key), table.header),
+            None => format!("E0011: the name `{}` is not a known key of {}. {answer}", shortened(key), table.header),
         };
     }
     let (name, header) = (shortened(key), table.header);
     if let Some(meant) = nearest(key, names(table)) {
-        return format!("E0011: `{name}` is not a known key of {header}; did you mean `{meant}`?");
+        return format!("E0011: the name `{name}` is not a known key of {header}; did you mean `{meant}`?");
     }
     let elsewhere = root.all().into_iter().find(|other| other.key(key).is_some());
     let hint = elsewhere.map_or(String::new(), |other| format!("; it belongs to {}", other.header));
     let known: Vec<&str> = names(table).collect();
-    format!("E0011: `{name}` is not a known key of {header}{hint}. Known keys: {}.", known.join(", "))
+    format!("E0011: the name `{name}` is not a known key of {header}{hint}. Known keys: {}.", known.join(", "))
 }

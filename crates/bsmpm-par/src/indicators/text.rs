@@ -28,17 +28,17 @@ pub(super) fn of(name: &str, case: &Case, value: f64) -> String {
 }
 
 const NOISE_ABOUT_AVERAGE: &str = "I0001: the mean stresses of neighbouring material points scatter by {value} of \
-     their average ({range}). Do not use stresses of single points. {remedy}";
+    their average ({range}). Do not use stresses of single points. {remedy}";
 const NOISE_ABOUT_PLANE: &str = "I0002: the mean stresses of neighbouring material points differ from a linear trend \
-     by {value} of their average ({range}). Do not use stresses of single points. {remedy}";
-const ENERGY_MADE: &str = "I0012: numerical dissipation is {value} of the peak energy ({range}). The algorithm \
-    adds energy to the motion. Reduce `analysis.dt`.";
+    by {value} of their average ({range}). Do not use stresses of single points. {remedy}";
+const ENERGY_MADE: &str = "I0012: numerical dissipation is {value} of the peak energy ({range}). The algorithm adds \
+    energy to the motion. Reduce `analysis.dt`.";
 const GROWTH: &str = "I0013: the algorithm has created {value} of the peak energy ({range}). The computed motion is \
     too fast. {remedy}";
 const WALL: &str = "I0019: soil next to fixed boundaries has too much kinetic energy, by {value} of the total \
-     ({range}). This soil slides too far. {remedy}";
+    ({range}). This soil slides too far. {remedy}";
 const INTERFACE: &str = "I0021: an interface of two materials has moved {value} from the grid line where it was at \
-     the start ({range}). Stresses within three cells of the interface are wrong. {remedy}";
+    the start ({range}). Stresses within three cells of the interface are wrong. {remedy}";
 
 /// Cells  Distance of an interface from its grid line from which on no reasonable cell is large enough.
 const FAR: f64 = 1.0;
@@ -47,10 +47,10 @@ const FAR: f64 = 1.0;
 fn against_shift(case: &Case, value: f64) -> &'static str {
     match (may_fit(case), value < FAR) {
         (true, true) => {
-            "Set `solver.quadrature = \"fitted\"`, or use larger cells, so that it stays within half a cell."
+            "Set `solver.quadrature = \"fitted\"`, or use larger cells: it then moves by a smaller part of a cell."
         }
         (true, false) => "Set `solver.quadrature = \"fitted\"`, or do not use these stresses.",
-        (false, true) => "Use larger cells, so that it stays within half a cell.",
+        (false, true) => "Use larger cells: it then moves by a smaller part of a cell.",
         (false, false) => "Do not use these stresses. Smaller cells do not help.",
     }
 }
@@ -121,17 +121,15 @@ fn constant(name: &str, case: &Case) -> &'static str {
     match name {
         "quadrature-defect" => {
             "I0003: the volume of the material points in full cells differs from that of the cell by {value} on \
-             average ({range}). \
-             Stresses are wrong by about as much. Increase `body.points_per_cell`."
+             average ({range}). Stresses are wrong by about as much. Increase `body.points_per_cell`."
         }
         "quadrature-defect-largest" => {
-            "I0004: in a cell full of soil, the volumes of the material points differ from the volume of the cell by \
-             {value} ({range}), and so does the stress there. Increase `body.points_per_cell`."
+            "I0004: in a full cell the material points together differ by {value} from the volume of the cell \
+             ({range}). The stress there is wrong by about as much. Increase `body.points_per_cell`."
         }
         "points-per-cell" => {
-            "I0005: full cells have {value} material points on average ({range}). The integration is too coarse, \
-             and stresses \
-             oscillate. Increase `body.points_per_cell`."
+            "I0005: full cells have {value} material points on average ({range}). The integration is too coarse, and \
+             stresses oscillate. Increase `body.points_per_cell`."
         }
         "compression" if may_fit(case) => {
             "I0006: the most compressed soil has lost {value} of its volume ({range}). With few points per cell its \
@@ -142,24 +140,20 @@ fn constant(name: &str, case: &Case) -> &'static str {
              stress is wrong by up to 1 %. Set `body.points_per_cell = 4`."
         }
         "force-measure" => {
-            "I0007: the program accepted a step with a force residual of {value} ({range}). This is a defect of \
-             the program. \
-             Report this message."
+            "I0007: the program accepted a step with a force residual of {value} ({range}). This is a defect of the \
+             program. Report this message."
         }
         "energy-measure" => {
             "I0008: the program accepted a step with an energy residual of {value} ({range}). This is a defect of \
-             the program. \
-             Report this message."
+             the program. Report this message."
         }
         "water-measure" => {
-            "I0009: the program accepted a step with a water residual of {value} ({range}). This is a defect of \
-             the program. \
-             Report this message."
+            "I0009: the program accepted a step with a water residual of {value} ({range}). This is a defect of the \
+             program. Report this message."
         }
         "water-balance" => {
-            "I0010: the water balance has an error of {value} of the water that moved ({range}). Water was \
-             created or lost. \
-             Reduce `solver.force_tolerance`."
+            "I0010: the water balance has an error of {value} of the water that moved ({range}). Water was created \
+             or lost. Reduce `solver.force_tolerance`."
         }
         "energy-closure" => {
             "I0011: the energy balance has an error of {value} of the peak energy ({range}). The steps are not \
@@ -170,20 +164,20 @@ fn constant(name: &str, case: &Case) -> &'static str {
              long. Increase `analysis.steps`."
         }
         "energy-loss" => {
-            "I0012: numerical dissipation is {value} of the peak energy ({range}). The motion is damped too strongly. \
-             Reduce `analysis.dt`."
+            "I0012: numerical dissipation is {value} of the peak energy ({range}). The motion is damped too \
+             strongly. Reduce `analysis.dt`."
         }
         "smoothing-length" => {
-            "I0014: strains were smoothed over a length of {value} ({range}). Details of the stress below this length \
-             are lost. Use smaller cells, or set `stabilisation.method = \"consistent-f-bar\"`."
+            "I0014: strains were smoothed over a length of {value} ({range}). Details of the stress below this \
+             length are lost. Use smaller cells, or set `stabilisation.method = \"consistent-f-bar\"`."
         }
         "slip" => {
             "I0015: slip of the soil along a rigid footing or segment is {value} of the motion of the latter \
              ({range}). The force is too small. Increase `analysis.steps`, or use smaller cells there."
         }
         "support-pull" => {
-            "I0016: a boundary holds soil in tension, with {value} of the largest reaction ({range}). Only a plane of \
-             symmetry may do so. Set a side that is none to `\"contact\"` in `[boundary]`."
+            "I0016: soil pulls on a fixed boundary, with {value} of the largest reaction ({range}). This is right at \
+             a plane of symmetry only. Set any other side to `\"contact\"` in `[boundary]`."
         }
         "front-setback" => {
             "I0017: the measured front moved back by {value} ({range}), because it ignores a tip thinner than half a \
@@ -191,18 +185,15 @@ fn constant(name: &str, case: &Case) -> &'static str {
         }
         "step-advance" => {
             "I0018: a material point moved by {value} in one step ({range}). The positions of fronts and contacts \
-             are wrong by 5 \
-             to 10 %. Reduce `analysis.dt`."
+             are wrong by 5 to 10 %. Reduce `analysis.dt`."
         }
         "rigid-penetration" if is_dynamic => {
-            "I0020: soil penetrates a rigid body by {value} ({range}). The position of the contact is wrong by \
-             this distance. \
-             Reduce `analysis.dt`."
+            "I0020: soil penetrates a rigid body by {value} ({range}). The position of the contact is wrong by this \
+             distance. Reduce `analysis.dt`."
         }
         "rigid-penetration" => {
-            "I0020: soil penetrates a rigid body by {value} ({range}). The position of the contact is wrong by \
-             this distance. \
-             Increase `analysis.steps`."
+            "I0020: soil penetrates a rigid body by {value} ({range}). The position of the contact is wrong by this \
+             distance. Increase `analysis.steps`."
         }
         "permeability-shift" => {
             "I0022: an interface of two permeabilities has moved {value} from its grid line ({range}). Flow is wrong \
@@ -210,26 +201,23 @@ fn constant(name: &str, case: &Case) -> &'static str {
         }
         "cells-across-footing" => {
             "I0023: the footing is {value} cells wide ({range}). The failure load is more than 8 % too large. Use \
-             smaller \
-             cells at the footing, or extrapolate with `bsmpm limit-load`."
+             smaller cells at the footing, or extrapolate with `bsmpm limit-load`."
         }
         "cells-across-opening" => {
             "I0024: the hole or notch {which} is {value} cells wide ({range}). The stress at its edge is wrong by \
-             more than \
-             10 %. Refine `grid.knots` there."
+             more than 10 %. Refine `grid.knots` there."
         }
         "force-noise" => {
-            "I0025: the force {which} scatters by {value} of its peak from step to step ({range}). Average it \
-             over several steps, \
-             or use smaller cells where it acts."
+            "I0025: the force {which} scatters by {value} of its peak from step to step ({range}). Average it over \
+             several steps, or use smaller cells where it acts."
         }
         "background-load-share" if case.solver.extended_splines == ExtendedSplines::Off => {
-            "I0026: only an artificial stiffness supports nearly empty cells, with {value} of the nodal forces \
-             ({range}). It gives way in every step, so soil there moves too far. Remove `solver.extension`."
+            "I0026: the artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). It \
+             yields in every step, so soil there moves too far. Remove `solver.extension`."
         }
         "background-load-share" => {
-            "I0026: only an artificial stiffness supports nearly empty cells, with {value} of the nodal forces \
-             ({range}). It gives way in every step, so soil there moves too far. Increase `body.points_per_cell`."
+            "I0026: the artificial stiffness of nearly empty cells carries {value} of the nodal forces ({range}). It \
+             yields in every step, so soil there moves too far. Increase `body.points_per_cell`."
         }
         "stiffness-loss" => {
             "I0027: {which}: the elastic stiffness is {value} times the tangent stiffness ({range}). Do not use \

@@ -148,8 +148,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             if self.warned_strips.insert(of_strips + points.len() + number) {
                 self.warn(format!(
                     "W0709: `{name}` does not drain the faces of a gap of {:.1} cells that opened in the soil at t = \
-                     {t}, so consolidation is too slow. To see the effect, compare a run with `drainage = \
-                     \"hydrostatic\"`.",
+                     {t}, so consolidation is too slow. Compare drainage = \"hydrostatic\" (no excess pore pressure).",
                     water.torn[number]
                 ));
             }

@@ -78,7 +78,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, record)) {
         report.warn(format!(
             "W0218: the undrained strength of material.{name} depends on the mean stress, which is inaccurate at {} \
-             (end of a load, or interface). Loads can be off by 4 %. Compare a run with model = \"tresca\".",
+             (end of a load or interface). Limit loads can be off by 4 %. Compare model = \"tresca\".",
             place_of(case, axis, line)
         ));
     }

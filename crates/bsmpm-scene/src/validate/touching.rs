@@ -107,7 +107,7 @@ fn check_meetings(case: &Case, root: &Record, report: &mut Report<'_>) {
             );
             let error = format!(
                 "E0250: rigid bodies `{name}` and `{of}` touch and move differently. Forces are {excess:.0} % too \
-                 large ({cells:.0} cells across; needed: 10). Use smaller cells, or [[prescribed]] for both."
+                 large ({cells:.0} cells across; needed: {FEWEST_CELLS:.0}). Use smaller cells, or [[prescribed]] for both."
             );
             match root.records("rigid").get(other) {
                 Some(record) if cells < FEWEST_CELLS => record.error("name", error, report),
