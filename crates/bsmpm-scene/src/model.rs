@@ -1,4 +1,4 @@
-//! From a valid case to the physics' model, its points and its steps.
+//! Builds the model, material points and step sequence of a case.
 
 use crate::region::Region;
 use crate::seed::seed_bodies;
@@ -17,7 +17,7 @@ use bsmpm::method::QuasiNewton;
 use bsmpm::model::{Gravity, Model, Shaking, Weighting};
 use bsmpm::points::{Points, Seed};
 use bsmpm::schedule::{Growth, Schedule};
-use bsmpm::stabilisation::{Groups, Stabilisation};
+use bsmpm::stabilisation::Groups;
 use bsmpm::step::adjoint::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm::water::Water;
@@ -309,7 +309,7 @@ pub fn frame_times(case: &Case) -> Vec<f64> {
 }
 
 /// Materials of one stiffness: what an average over the grid may mix. One that depends on the height or the stress is
-/// alike to itself; under consistent F-bar one that dilates is not alike to one that does not, as their forces are
+/// alike to itself; under consistent and sub-grid F-bar one that dilates is not alike to one that does not, as their forces are
 /// formed in other ways.
 pub fn groups(case: &Case) -> Groups {
     groups_of(case, &case.materials)
@@ -319,7 +319,7 @@ fn groups_of(case: &Case, materials: &[NamedMaterial]) -> Groups {
     let kind = |named: &NamedMaterial| {
         let alone = named.material.is_graded() || !named.material.is_linear();
         let graded = alone.then(|| named.name.clone());
-        let adjoint = case.stabilisation == Stabilisation::ConsistentFBar && is_dilatant(&named.material);
+        let adjoint = case.stabilisation.lowers() && is_dilatant(&named.material);
         (named.material.elastic().clone(), graded, adjoint)
     };
     Groups::of_alike(&materials.iter().map(kind).collect::<Vec<_>>())

@@ -1,4 +1,4 @@
-//! Materials that meet: which averages over the grid may mix, how they weigh, and what is warned of.
+//! Tests material interfaces: averages, weights and warnings.
 
 use bsmpm::model::Weighting;
 use bsmpm_scene::{Case, model};
@@ -23,6 +23,20 @@ fn averages_do_not_mix_materials_of_different_stiffness_and_weigh_different_dens
     ] {
         let case = layers(changes);
         assert_eq!((model::groups(&case).count(), model::weighting(&case)), (groups, weighting), "{changes:?}");
+    }
+}
+
+/// The dilatant one has the adjoint force, and the other one does not.
+#[test]
+fn averages_do_not_mix_dilatant_material_with_other_material() {
+    let yielding = "model=\"mohr-coulomb\", young=1e9, poisson=0.3, cohesion=1e6, friction_angle=30, unit_weight=2e4";
+    for method in ["consistent-f-bar", "subgrid-f-bar"] {
+        let case = layers(&[
+            &format!("stabilisation.method=\"{method}\""),
+            &format!("material.light={{ {yielding}, dilation_angle=20 }}"),
+            &format!("material.heavy={{ {yielding}, dilation_angle=0 }}"),
+        ]);
+        assert_eq!(model::groups(&case).count(), 2, "{method}");
     }
 }
 
