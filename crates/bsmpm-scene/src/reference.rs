@@ -1,8 +1,8 @@
-//! The case language as a page of Markdown: every table, key, unit, range and default, and every quantity of a history.
+//! Writes the reference of all case keys as Markdown.
 
 use crate::schema::{Dimension, Group, Key, Kind, Presence, ROOT, Range, Table};
 use crate::unit;
-use crate::words::{Measurement, Word};
+use crate::words::{Measurement, Word, Words};
 use std::fmt::Write;
 
 /// Width of the page's lines, characters.
@@ -11,10 +11,11 @@ const WIDTH: usize = 120;
 /// The reference of the case file, Markdown with lines of 120 characters at most: it follows from the schema alone.
 pub fn reference() -> String {
     let mut page = Page::default();
-    page.line("# Case reference\n");
+    page.line("# Keys of the case file\n");
     page.paragraph(
-        "This page is printed by `bsmpm keys` from the schema that reads case files. A number is in SI units (angles \
-         in degrees); a string carries a unit. A table that is absent means that the thing does not exist in the scene.",
+        "`bsmpm keys` prints this page from the table with which the program reads case files. A number without a unit is \
+         in SI units, an angle in degrees. A text may give another unit: `\"30 MPa\"`. Each key has its symbol, its \
+         meaning, the values that are allowed, its default and an example.",
     );
     page.units();
     let mut described: Vec<&Table> = Vec::new();
@@ -27,12 +28,13 @@ pub fn reference() -> String {
     }
     page.line("## Rows from a file\n");
     page.paragraph(
-        "Where rows are given, `{ file = \"record.csv\" }` takes them from a text file beside the case: a line for each, \
-         cells between commas, semicolons, tabs or blanks, `#` before a comment. A heading may give units, as in `t [s], \
-         ux [mm]`. With `along = \"x\"` (or `\"y\"`) the file has two columns, a time and a number, and the other \
-         component is zero. The rows become part of the case: `run.json` keeps them, and a restart needs no file. `--set` \
-         and the parameters of a sweep take rows only.",
+        "Instead of rows, `{ file = \"record.csv\" }` names a text file in the folder of the case. Each line is a row. \
+         Commas, semicolons, tabs or spaces separate its values, and `#` begins a comment. A heading may give units, for \
+         example `t [s], ux [mm]`. With `along = \"x\"` (or \"y\", in 3-D \"z\") the file has two columns, a time and a value \
+         along this axis; the other components are zero. The rows become part of the case: `run.json` stores them, and \
+         a restart does not need the file. `--set` and the parameters of a sweep accept rows only.",
     );
+    page.shared_words();
     page.histories();
     page.text
 }
@@ -82,55 +84,90 @@ impl Page {
             self.wrapped("- ", &format!("{noun}: {}", units.join(", ")));
         }
         self.line("");
-        self.paragraph("The first of each is that of a number without a unit.");
+        self.paragraph("The first unit of each line is that of a number without a unit.");
     }
 
     fn table(&mut self, table: &Table) {
         let header = if table.header.contains(['[', '{']) { quoted(table) } else { "Top level".to_owned() };
         self.line(&format!("## {header}\n"));
-        self.paragraph(&format!("{}.", table.doc));
+        self.paragraph(table.doc);
         for key in table.keys {
             self.key(key);
         }
         self.line("");
-        for group in table.exclusive {
+        for group in table.exclusive.iter().filter(|group| !is_second_end(group, table)) {
             self.paragraph(&choice(group));
         }
     }
 
     fn key(&mut self, key: &Key) {
         if key.presence == Presence::Retired {
-            let text = format!("**`{}`**: this key has no effect any more, as {}. Delete it.", key.name, key.doc);
+            let text = format!("**`{}`**: This key has no effect any more, because {}. Delete it.", key.name, key.doc);
             return self.wrapped("- ", &text);
         }
-        let mut text = format!("**`{}`**: {}.", key.name, key.doc);
+        let symbol = if key.symbol.is_empty() { String::new() } else { format!(" ({})", key.symbol) };
+        let mut text = format!("**`{}`**{symbol}: {}", key.name, key.doc);
         if !matches!(key.kind, Kind::Open) {
             let _ = write!(text, " {}.", capitalised(&takes(key)));
         }
         let _ = write!(text, " {}.", presence(key.presence));
+        if let Some(value) = key.example_value() {
+            let _ = write!(text, " Example: `{} = {value}`.", key.name);
+        }
         self.wrapped("- ", &text);
         if let Kind::Choice(words) | Kind::ChoiceOr(words, _) | Kind::Choices(words) = key.kind {
-            if words.words().eq(Measurement::WORDS.words()) {
-                return self.wrapped("  - ", "its words are [at the end of the page](#quantities-of-a-history)");
+            self.words_of(words);
+        }
+    }
+
+    /// The words of a key, or where they are.
+    fn words_of(&mut self, words: Words) {
+        if words.words().eq(Measurement::WORDS.words()) {
+            return self.wrapped("  - ", "The words are [at the end of the page](#quantities-of-a-history).");
+        }
+        if is_shared(words) {
+            return self.wrapped("  - ", "The words are [those of several keys](#words-of-several-keys).");
+        }
+        self.words("  - ", words);
+    }
+
+    fn words(&mut self, bullet: &str, words: Words) {
+        for (word, doc) in words.all() {
+            self.wrapped(bullet, &format!("`\"{word}\"`: {}", sentence(doc)));
+        }
+        for word in words.later {
+            self.wrapped(bullet, &format!("`\"{word}\"`: Not available yet."));
+        }
+    }
+
+    /// The words that several keys have, once.
+    fn shared_words(&mut self) {
+        self.line("## Words of several keys\n");
+        let mut printed: Vec<Words> = Vec::new();
+        for (_, words) in all_words() {
+            if !is_shared(words) || printed.iter().any(|other| are_same(*other, words)) {
+                continue;
             }
-            for (word, doc) in words.all() {
-                self.wrapped("  - ", &format!("`\"{word}\"`: {}", doc.trim_end_matches('.')));
-            }
-            for word in words.later {
-                self.wrapped("  - ", &format!("`\"{word}\"`: not available yet"));
-            }
+            printed.push(words);
+            let mut keys: Vec<String> =
+                all_words().filter(|(_, of)| are_same(*of, words)).map(|(key, _)| key).collect();
+            keys.sort();
+            keys.dedup();
+            self.paragraph(&format!("Words of {}:", keys.join(", ")));
+            self.words("- ", words);
+            self.line("");
         }
     }
 
     fn histories(&mut self) {
         self.line("## Quantities of a history\n");
         self.paragraph(
-            "Words of `quantity` in `[[history]]`, with the unit of the numbers. A quantity of several numbers has a \
-             column for each, whose name has what is reported here appended.",
+            "Words of `quantity` in `[[history]]`, with their unit in plane strain, where extensive quantities are per metre \
+             of thickness. A quantity with several values has a column for each, whose name ends as listed here.",
         );
         for (word, doc) in Measurement::WORDS.all() {
             let Some(measured) = Measurement::of(word) else { continue };
-            self.wrapped("- ", &format!("**`{word}`** ({}): {doc}", measured.unit()));
+            self.wrapped("- ", &format!("**`{word}`** ({}): {}", measured.unit(), sentence(doc)));
             for (suffix, part) in measured.columns().iter().filter(|(suffix, _)| !suffix.is_empty()) {
                 self.wrapped("  - ", &format!("`{suffix}`: {part}"));
             }
@@ -141,6 +178,32 @@ impl Page {
     }
 }
 
+/// Every key that takes words, quoted, and its words.
+fn all_words() -> impl Iterator<Item = (String, Words)> {
+    let keys = ROOT.all().into_iter().flat_map(|table| table.keys);
+    keys.filter(|key| key.presence != Presence::Retired).filter_map(|key| match key.kind {
+        Kind::Choice(words) | Kind::ChoiceOr(words, _) | Kind::Choices(words) => {
+            Some((format!("`{}`", key.name), words))
+        }
+        _ => None,
+    })
+}
+
+/// Whether two keys have the same words.
+fn are_same(one: Words, other: Words) -> bool {
+    one.all().eq(other.all())
+}
+
+/// Whether several keys have these words.
+fn is_shared(words: Words) -> bool {
+    all_words().filter(|(_, other)| are_same(words, *other)).count() > 1
+}
+
+/// A text with a full stop.
+fn sentence(text: &str) -> String {
+    format!("{}.", text.trim_end_matches('.'))
+}
+
 /// A table's header, what is TOML in it as code.
 fn quoted(table: &Table) -> String {
     match table.header.split_once("} ") {
@@ -149,11 +212,17 @@ fn quoted(table: &Table) -> String {
     }
 }
 
-/// Keys of which only one may be given, in words.
+/// Keys of which only one may be given, in words; the ends of a segment are given together.
 fn choice(group: &Group) -> String {
     let keys: Vec<String> = group.keys.iter().map(|key| format!("`{key}`")).collect();
-    let how_many = if group.required { "Exactly" } else { "At most" };
-    format!("{how_many} one of {} may be given.", keys.join(", "))
+    let how_many = if group.required { "Give one" } else { "Give at most one" };
+    format!("{how_many} of {}.", keys.join(", ")).replace("`from`", "`from` with `to`")
+}
+
+/// Whether a group is that of the second end of a segment, whose first end has the same group.
+fn is_second_end(group: &Group, table: &Table) -> bool {
+    let first = |other: &Group| other.keys.contains(&"from") && other.keys.last() == group.keys.last();
+    group.keys.contains(&"to") && table.exclusive.iter().any(first)
 }
 
 fn presence(presence: Presence) -> String {
@@ -193,15 +262,23 @@ fn takes(key: &Key) -> String {
         ),
         Kind::Choice(_) => "one of these words".to_owned(),
         Kind::Choices(_) => "a list of these words".to_owned(),
-        Kind::ChoiceOr(_, table) => format!("one of these words, or a table, `{}`", table.header),
+        Kind::ChoiceOr(_, table) => format!("one of these words, or a table, `{}`", header_of(key, table)),
         Kind::Table(table) | Kind::Named(table) | Kind::Tables(table) => match key.kind {
             Kind::Named(_) => format!("tables with names, `{}`", table.header),
             Kind::Tables(_) => format!("any number of `{}`", table.header),
-            _ => format!("a table, `{}`", table.header),
+            _ => format!("a table, `{}`", header_of(key, table)),
         },
         Kind::Measure | Kind::Count(..) | Kind::Text(_) | Kind::Name | Kind::Names | Kind::Flag | Kind::Open => {
             key.kind.to_string()
         }
+    }
+}
+
+/// The header of a table with the key in it: several keys may have tables of one shape.
+fn header_of(key: &Key, table: &Table) -> String {
+    match table.header.split_once(" = {") {
+        Some((_, keys)) => format!("{} = {{{keys}", key.name),
+        None => table.header.to_owned(),
     }
 }
 
@@ -219,4 +296,72 @@ fn range_of(name: &str, range: &Range) -> String {
 fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Report;
+    use crate::source::Source;
+    use crate::{document, record};
+
+    /// Geometries and analyses in which a key may have its meaning.
+    const SETTINGS: [[&str; 2]; 4] =
+        [["plane-strain", "dynamic"], ["plane-strain", "quasi-static"], ["3d", "dynamic"], ["3d", "quasi-static"]];
+
+    /// Errors about `key` in a file with a table that has no other key.
+    fn errors_of(key: &'static Key, value: &str, [geometry, analysis]: [&str; 2]) -> Vec<String> {
+        let table: &'static Table = Box::leak(Box::new(Table {
+            header: "[example]",
+            doc: "An example.",
+            keys: std::slice::from_ref(key),
+            exclusive: &[],
+        }));
+        let text = format!("{} = {value}\n", key.name);
+        let setting = format!("geometry = \"{geometry}\"\nanalysis = {{ type = \"{analysis}\" }}\n");
+        let text = if ["geometry", "analysis"].contains(&key.name) { text } else { setting + &text };
+        let source = Source::new("example.toml", &text);
+        let mut report = Report::new(&source, &[]);
+        let parsed = document::parse(&source, &mut report);
+        record::read(table, &parsed, &mut report);
+        let errors = report.into_errors();
+        let of_key = errors.into_iter().filter(|error| error.key.starts_with(key.name) || error.key.is_empty());
+        of_key.map(|error| error.message).collect()
+    }
+
+    #[test]
+    fn every_key_has_an_example_that_it_accepts() {
+        for table in ROOT.all() {
+            for key in table.keys.iter().filter(|key| key.presence != Presence::Retired) {
+                let place = format!("{} in {}", key.name, table.header);
+                let Some(value) = key.example_value() else {
+                    let has_table = matches!(key.kind, Kind::Table(_) | Kind::Named(_) | Kind::Tables(_));
+                    assert!(has_table, "{place}: no example");
+                    continue;
+                };
+                // A file is read before the table.
+                if value.contains("file = ") {
+                    continue;
+                }
+                let tried = SETTINGS.map(|setting| errors_of(key, &value, setting));
+                assert!(tried.iter().any(Vec::is_empty), "{place} = {value}: {tried:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_text_is_a_sentence() {
+        let is_sentence = |text: &str| text.ends_with('.') && !text.starts_with(|c: char| c.is_lowercase());
+        for table in ROOT.all() {
+            assert!(is_sentence(table.doc), "{}: {}", table.header, table.doc);
+            for key in table.keys.iter().filter(|key| key.presence != Presence::Retired) {
+                assert!(is_sentence(key.doc), "{} in {}: {}", key.name, table.header, key.doc);
+            }
+        }
+        for (_, words) in all_words() {
+            for (word, doc) in words.all() {
+                assert!(is_sentence(doc), "{word}: {doc}");
+            }
+        }
+    }
 }

@@ -1,6 +1,4 @@
-//! The language of case files as one table: every key with its type, range, default and meaning.
-//!
-//! The reader takes names, types, units, ranges and defaults from here; messages and `did you mean` do too.
+//! The schema of case files: all keys with type, unit, range, default and description.
 
 mod answers;
 mod body;
@@ -59,8 +57,12 @@ pub struct Key {
     pub kind: Kind,
     /// Whether it must be given.
     pub presence: Presence,
-    /// What it means.
+    /// What it means: sentences with a full stop; of a key without effect the reason, as part of a sentence.
     pub doc: &'static str,
+    /// Symbol of the field; empty without one.
+    pub symbol: &'static str,
+    /// A value as written in a case file; empty where its kind gives one.
+    pub value: &'static str,
     /// Names that it had in earlier versions, which are still read.
     pub earlier: &'static [&'static str],
 }
@@ -70,10 +72,33 @@ impl Key {
     const fn renamed_from(self, earlier: &'static [&'static str]) -> Self {
         Self { earlier, ..self }
     }
+
+    /// The same key with its symbol in the field.
+    const fn symbol(self, symbol: &'static str) -> Self {
+        Self { symbol, ..self }
+    }
+
+    /// The same key with an example of its value, as written in a case file.
+    const fn example(self, value: &'static str) -> Self {
+        Self { value, ..self }
+    }
+
+    /// A value as written in a case file, which its kind accepts; none for tables, which have examples of their keys.
+    pub fn example_value(&self) -> Option<String> {
+        if !self.value.is_empty() {
+            return Some(self.value.to_owned());
+        }
+        match self.kind {
+            Kind::Choice(words) | Kind::ChoiceOr(words, _) => words.words().next().map(|word| format!("\"{word}\"")),
+            Kind::Choices(words) => words.words().next().map(|word| format!("[\"{word}\"]")),
+            Kind::Flag => Some("true".to_owned()),
+            _ => None,
+        }
+    }
 }
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
-    Key { name, kind, presence, doc, earlier: &[] }
+    Key { name, kind, presence, doc, symbol: "", value: "", earlier: &[] }
 }
 
 /// Whether a key must be given, and what holds if it is not.

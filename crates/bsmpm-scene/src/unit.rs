@@ -1,5 +1,4 @@
-//! Numbers with units: `"5840 kPa"`, `"2.5 mm"`. A decimal prefix moves the exponent, so that `"2.5 mm"` is 0.0025 to
-//! the last bit.
+//! Reads numbers with units exactly: `"2.5 mm"` becomes 0.0025.
 
 use crate::nearest::hint;
 use std::fmt;
@@ -211,7 +210,7 @@ impl fmt::Display for Dimension {
             Self::Number => "a pure number",
             Self::Length => "a length",
             Self::Time => "a time",
-            Self::Duration => "a time by the clock",
+            Self::Duration => "a wall-clock time",
             Self::Stress => "a stress",
             Self::Density => "a density",
             Self::UnitWeight => "a unit weight",

@@ -1,7 +1,4 @@
-//! The words of the case language as types: every choice is defined once, by its words, what they mean and what they
-//! stand for. Schema, reader, messages and manifest take them from here.
-//!
-//! A variant without a word does not compile, and a word stands for one variant or is none: there are no default arms.
+//! Words that keys accept, such as `"plane-strain"`, as enums with descriptions.
 
 #[macro_use]
 mod define;
@@ -80,7 +77,7 @@ impl Words {
 
 /// What the word `auto` leaves to the program is `None`.
 impl<T: Word> Word for Option<T> {
-    const WORDS: Words = Words { auto: Some((AUTO, "chosen by the program")), ..T::WORDS };
+    const WORDS: Words = Words { auto: Some((AUTO, "Chosen by the program.")), ..T::WORDS };
 
     fn of(word: &str) -> Option<Self> {
         if word == AUTO { Some(None) } else { T::of(word).map(Some) }

@@ -1,4 +1,4 @@
-//! What people type in place of a key: symbols of the field, names of other programs, and features that do not exist.
+//! Hints for unknown keys, such as symbols and names from other programs.
 
 use super::Table;
 

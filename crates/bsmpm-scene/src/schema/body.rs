@@ -1,4 +1,4 @@
-//! The tables of bodies and their shapes.
+//! Schema of bodies and their shapes.
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
@@ -7,22 +7,62 @@ use crate::words::{Axis, Word};
 
 pub(super) static BODY: Table = Table {
     header: "[[body]]",
-    doc: "A body made of material points",
+    doc: "A body of soil, which is filled with material points.",
     keys: &[
-        key("material", Name, Required, "name of its material"),
-        key("name", Name, Optional, "what stages and histories call it"),
-        key("box", Kind::Table(&BOX), Optional, "a rectangle, in 3-D a cuboid"),
-        key("polygon", POLYGON, Optional, "corners of a polygon, in either direction; its points are those inside"),
-        key("circle", Kind::Table(&CIRCLE), Optional, "a circle; its points are those inside"),
-        key("extrude", Kind::Table(&EXTRUDE), Optional, "in 3-D: an outline along an axis, e.g. a cylinder"),
-        key("sphere", Kind::Table(&SPHERE), Optional, "in 3-D: a sphere"),
-        key("revolve", Kind::Table(&REVOLVE), Optional, "in 3-D: an outline about a vertical"),
-        key("terrain", Kind::Table(&TERRAIN), Optional, "in 3-D: what lies under a raster of heights"),
-        key("surface", Kind::Table(&SURFACE), Optional, "in 3-D: what a closed surface of triangles encloses"),
-        key("subtract", Tables(&SUBTRACT), Optional, "shapes that are cut out"),
-        key("points_per_cell", Count(1, 100), Required, "points along each axis of a cell"),
-        key("velocity", Vector(In::Velocity, Range::ANY), Optional, "at the start; absent: at rest"),
-        key("spin", Kind::Table(&SPIN), Optional, "rotation as if rigid at the start, besides velocity"),
+        key("material", Name, Required, "Name of its material.").example(r#""clay""#),
+        key("name", Name, Optional, "Name by which stages, histories and results refer to the body.")
+            .example(r#""lift_1""#),
+        key("box", Kind::Table(&BOX), Optional, "A rectangle, in 3-D a cuboid.")
+            .example("{ lower = [0.0, 0.0], upper = [10.0, 4.0] }"),
+        key("polygon", POLYGON, Optional, "Corners of a polygon, clockwise or counter-clockwise.")
+            .example("[[0.0, 0.0], [20.0, 0.0], [0.0, 10.0]]"),
+        key("circle", Kind::Table(&CIRCLE), Optional, "A circle.")
+            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
+        key(
+            "extrude",
+            Kind::Table(&EXTRUDE),
+            Optional,
+            "An outline that is extruded along an axis, for instance a cylinder. Only in 3-D.",
+        )
+        .example(r#"{ circle = { centre = [0.0, 0.0], radius = 1.0 }, along = "z", from = 0.0, to = 2.0 }"#),
+        key("sphere", Kind::Table(&SPHERE), Optional, "A sphere. Only in 3-D.")
+            .example(r#"{ centre = [0.0, 0.0, 1.0], radius = "1 m" }"#),
+        key(
+            "revolve",
+            Kind::Table(&REVOLVE),
+            Optional,
+            "An outline that is rotated about a vertical axis. Only in 3-D.",
+        )
+        .example("{ polygon = [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]], about = [0.0, 0.0] }"),
+        key("terrain", Kind::Table(&TERRAIN), Optional, "The ground below a raster of heights. Only in 3-D.")
+            .example(r#"{ top = { file = "terrain.asc" }, level = 0.0 }"#),
+        key(
+            "surface",
+            Kind::Table(&SURFACE),
+            Optional,
+            "The space that a closed surface of triangles encloses. Only in 3-D.",
+        )
+        .example(r#"{ triangles = { file = "body.stl" } }"#),
+        key("subtract", Tables(&SUBTRACT), Optional, "Shapes that are cut out of the body.")
+            .example("[{ box = { lower = [2.0, 2.0], upper = [4.0, 4.0] } }]"),
+        key(
+            "points_per_cell",
+            Count(1, 100),
+            Required,
+            "Number of material points along each axis of a cell. Without this key `accuracy` or `purpose` chooses \
+             it.",
+        )
+        .example("3"),
+        key(
+            "velocity",
+            Vector(In::Velocity, Range::ANY),
+            Optional,
+            "Velocity at the start. Without this key the body is at rest.",
+        )
+        .symbol("v")
+        .example("[1.0, 0.0]"),
+        key("spin", Kind::Table(&SPIN), Optional, "Rigid rotation at the start, in addition to velocity.")
+            .example("{ rate = 1.0, about = [0.0, 0.0] }"),
     ],
     exclusive: &[one_of(SHAPES, true)],
 };
@@ -33,53 +73,96 @@ pub(super) const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, R
 
 static SPIN: Table = Table {
     header: "spin = { rate, about, axis }",
-    doc: "Rotation at the start: v = velocity + rate x (x - about)",
+    doc: "Rigid rotation at the start: the velocity of a material point is velocity + rate × (x - about).",
     keys: &[
-        key("rate", Quantity(In::Number, Range::ANY), Required, "rad/s, counter-clockwise"),
-        key("about", Vector(In::Length, Range::ANY), Required, "a place that it leaves at rest"),
+        key(
+            "rate",
+            Quantity(In::Number, Range::ANY),
+            Required,
+            "Angular velocity in rad/s, positive counter-clockwise.",
+        )
+        .symbol("ω")
+        .example("1.0"),
+        key("about", Vector(In::Length, Range::ANY), Required, "Centre of the rotation.").example("[0.0, 0.0]"),
         key(
             "axis",
             Vector(In::Number, Range::ANY),
             Optional,
-            "in 3-D: towards where it is seen to turn so; up unless given",
-        ),
+            "Axis of the rotation in 3-D. Seen against the axis the rotation is counter-clockwise. Without this key \
+             the axis is vertical.",
+        )
+        .example("[0.0, 0.0, 1.0]"),
     ],
     exclusive: &[],
 };
 
 pub(super) static CIRCLE: Table = Table {
     header: "circle = { centre, radius }",
-    doc: "A circle",
+    doc: "A circle.",
     keys: &[
-        key("centre", Pair(In::Length, Range::ANY), Required, "its centre").renamed_from(&["center"]),
-        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "its radius"),
+        key("centre", Pair(In::Length, Range::ANY), Required, "Its centre.")
+            .example("[2.0, 2.0]")
+            .renamed_from(&["center"]),
+        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "Its radius.").example(r#""1 m""#),
     ],
     exclusive: &[],
 };
 
 static SUBTRACT: Table = Table {
     header: "subtract = [{ ... }, ...]",
-    doc: "A shape that is cut out of a body; it may reach beyond the body",
+    doc: "A shape that is cut out of a body. It may extend beyond the body.",
     keys: &[
-        key("box", Kind::Table(&BOX), Optional, "a rectangle"),
-        key("polygon", POLYGON, Optional, "corners of a polygon, in either direction"),
-        key("circle", Kind::Table(&CIRCLE), Optional, "a circle"),
-        key("extrude", Kind::Table(&EXTRUDE), Optional, "in 3-D: an outline along an axis"),
-        key("sphere", Kind::Table(&SPHERE), Optional, "in 3-D: a sphere"),
-        key("revolve", Kind::Table(&REVOLVE), Optional, "in 3-D: an outline about a vertical"),
-        key("terrain", Kind::Table(&TERRAIN), Optional, "in 3-D: what lies under a raster of heights"),
-        key("surface", Kind::Table(&SURFACE), Optional, "in 3-D: what a closed surface of triangles encloses"),
+        key("box", Kind::Table(&BOX), Optional, "A rectangle, in 3-D a cuboid.")
+            .example("{ lower = [0.0, 0.0], upper = [10.0, 4.0] }"),
+        key("polygon", POLYGON, Optional, "Corners of a polygon, clockwise or counter-clockwise.")
+            .example("[[0.0, 0.0], [20.0, 0.0], [0.0, 10.0]]"),
+        key("circle", Kind::Table(&CIRCLE), Optional, "A circle.")
+            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
+        key("extrude", Kind::Table(&EXTRUDE), Optional, "An outline that is extruded along an axis. Only in 3-D.")
+            .example(r#"{ circle = { centre = [0.0, 0.0], radius = 1.0 }, along = "z", from = 0.0, to = 2.0 }"#),
+        key("sphere", Kind::Table(&SPHERE), Optional, "A sphere. Only in 3-D.")
+            .example(r#"{ centre = [0.0, 0.0, 1.0], radius = "1 m" }"#),
+        key(
+            "revolve",
+            Kind::Table(&REVOLVE),
+            Optional,
+            "An outline that is rotated about a vertical axis. Only in 3-D.",
+        )
+        .example("{ polygon = [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]], about = [0.0, 0.0] }"),
+        key("terrain", Kind::Table(&TERRAIN), Optional, "The ground below a raster of heights. Only in 3-D.")
+            .example(r#"{ top = { file = "terrain.asc" }, level = 0.0 }"#),
+        key(
+            "surface",
+            Kind::Table(&SURFACE),
+            Optional,
+            "The space that a closed surface of triangles encloses. Only in 3-D.",
+        )
+        .example(r#"{ triangles = { file = "body.stl" } }"#),
     ],
     exclusive: &[one_of(SHAPES, true)],
 };
 
 static TERRAIN: Table = Table {
     header: "terrain = { top, base, level }",
-    doc: "What lies under the posts of a regular raster of heights, bilinear between them, and above a base",
+    doc: "The ground below a regular raster of heights and above a base. The heights are interpolated bilinearly.",
     keys: &[
-        key("top", HEIGHTS, Required, "rows [x, y, z] in any order; a file may also be an ASCII grid, by its centres"),
-        key("base", HEIGHTS, Optional, "the same for the lower side, at the same posts; nowhere above the top"),
-        key("level", Quantity(In::Length, Range::ANY), Optional, "height of a level base instead"),
+        key(
+            "top",
+            HEIGHTS,
+            Required,
+            "Rows [x, y, z] in any order. A file may also be an ESRI ASCII grid, whose values belong to the centres \
+             of its cells.",
+        )
+        .example(r#"{ file = "terrain.asc" }"#),
+        key(
+            "base",
+            HEIGHTS,
+            Optional,
+            "Heights of the lower side at the same places. They must not exceed those of the top.",
+        )
+        .example(r#"{ file = "bedrock.asc" }"#),
+        key("level", Quantity(In::Length, Range::ANY), Optional, "Height of a horizontal base, instead of base.")
+            .example("0.0"),
     ],
     exclusive: &[one_of(&["base", "level"], true)],
 };
@@ -88,16 +171,23 @@ pub(super) const HEIGHTS: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, R
 
 pub(super) static SURFACE: Table = Table {
     header: "surface = { triangles, scale }",
-    doc: "Of a body what a closed surface of triangles encloses (shells may lie inside one another, turned the other \
-          way); of a traction the surface, which may be open, in one piece",
+    doc: "A surface of triangles. For a body it must be closed, and inner shells may make cavities. For a traction \
+          it may be open, and must be in one piece.",
     keys: &[
-        key("triangles", TRIANGLES, Required, "rows [x, y, z] of three corners each; a file may also be STL"),
+        key(
+            "triangles",
+            TRIANGLES,
+            Required,
+            "Rows of the three corners of each triangle, nine coordinates in a row. A file may also be STL.",
+        )
+        .example(r#"{ file = "body.stl" }"#),
         key(
             "scale",
             Quantity(In::Number, Range::POSITIVE),
             Default("1.0"),
-            "factor of all places; 0.001 of millimetres",
-        ),
+            "Factor of all coordinates, for instance 0.001 for millimetres.",
+        )
+        .example("0.001"),
     ],
     exclusive: &[],
 };
@@ -106,45 +196,51 @@ const TRIANGLES: Kind = Rows(&[(In::Length, Range::ANY); 9]);
 
 static EXTRUDE: Table = Table {
     header: "extrude = { polygon, circle, along, from, to }",
-    doc: "An outline in the plane of the other two axes, in their order, between two places of an axis; a circle makes a \
-          cylinder",
+    doc: "An outline in the plane of two axes, extruded along the third one. The outline has the coordinates of the \
+          two axes in their order. A circle makes a cylinder.",
     keys: &[
-        key("polygon", POLYGON, Optional, "corners of a polygon, in either direction"),
-        key("circle", Kind::Table(&CIRCLE), Optional, "a circle"),
-        key("along", Choice(Axis::WORDS), Required, "the axis"),
-        key("from", Quantity(In::Length, Range::ANY), Required, "where it begins"),
-        key("to", Quantity(In::Length, Range::ANY), Required, "where it ends"),
+        key("polygon", POLYGON, Optional, "Corners of a polygon, clockwise or counter-clockwise.")
+            .example("[[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]"),
+        key("circle", Kind::Table(&CIRCLE), Optional, "A circle.")
+            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
+        key("along", Choice(Axis::WORDS), Required, "The axis of the extrusion.").example(r#""z""#),
+        key("from", Quantity(In::Length, Range::ANY), Required, "Coordinate at which it begins.").example("0.0"),
+        key("to", Quantity(In::Length, Range::ANY), Required, "Coordinate at which it ends.").example(r#""2 m""#),
     ],
     exclusive: &[one_of(&["polygon", "circle"], true)],
 };
 
 pub(super) static SPHERE: Table = Table {
     header: "sphere = { centre, radius }",
-    doc: "A sphere",
+    doc: "A sphere.",
     keys: &[
-        key("centre", Vector(In::Length, Range::ANY), Required, "its centre").renamed_from(&["center"]),
-        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "its radius"),
+        key("centre", Vector(In::Length, Range::ANY), Required, "Its centre.")
+            .example("[0.0, 0.0, 1.0]")
+            .renamed_from(&["center"]),
+        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "Its radius.").example(r#""1 m""#),
     ],
     exclusive: &[],
 };
 
 pub(super) static REVOLVE: Table = Table {
     header: "revolve = { polygon, circle, about }",
-    doc: "An outline of the radius and z, turned about a vertical",
+    doc: "An outline with the coordinates radius and z, rotated about a vertical axis.",
     keys: &[
-        key("polygon", POLYGON, Optional, "corners of a polygon, [radius, z], in either direction"),
-        key("circle", Kind::Table(&CIRCLE), Optional, "a circle, which makes a ring"),
-        key("about", Pair(In::Length, Range::ANY), Required, "x and y of the vertical"),
+        key("polygon", POLYGON, Optional, "Corners of a polygon as [radius, z], clockwise or counter-clockwise.")
+            .example("[[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]]"),
+        key("circle", Kind::Table(&CIRCLE), Optional, "A circle, which makes a ring.")
+            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
+        key("about", Pair(In::Length, Range::ANY), Required, "Coordinates x and y of the axis.").example("[0.0, 0.0]"),
     ],
     exclusive: &[one_of(&["polygon", "circle"], true)],
 };
 
 pub(super) static BOX: Table = Table {
     header: "box = { lower, upper }",
-    doc: "A rectangle, in 3-D a cuboid, along the axes; it may cut cells",
+    doc: "A rectangle, in 3-D a cuboid, with edges along the axes. It may cut cells.",
     keys: &[
-        key("lower", Vector(In::Length, Range::ANY), Required, "lower corner"),
-        key("upper", Vector(In::Length, Range::ANY), Required, "upper corner"),
+        key("lower", Vector(In::Length, Range::ANY), Required, "Lower corner.").example("[0.0, 0.0]"),
+        key("upper", Vector(In::Length, Range::ANY), Required, "Upper corner.").example("[10.0, 4.0]"),
     ],
     exclusive: &[],
 };

@@ -1,4 +1,4 @@
-//! Tests of one material point.
+//! Schema of tests of one material point.
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
@@ -7,23 +7,34 @@ use crate::words::{Path, Word};
 
 pub(super) static ELEMENT: Table = Table {
     header: "[element.NAME]",
-    doc: "A laboratory test of one material point, which `bsmpm element` computes; runs of the case leave it alone",
+    doc: "A laboratory test of one material point, which `bsmpm element` computes. Runs of the case ignore it.",
     keys: &[
-        key("material", Name, Optional, "name of the material; the only one unless given"),
+        key("material", Name, Optional, "Name of the material. Without this key it is the only one of the case.")
+            .example(r#""sand""#),
         key(
             "height",
             Quantity(In::Length, Range::ANY),
             Optional,
-            "y of the point, in 3-D z, for parameters that depend on the height (required then)",
-        ),
+            "Height of the point, y and in 3-D z. Required if parameters of the material depend on the height.",
+        )
+        .example(r#""5 m""#),
         key(
             "pressure",
             Quantity(In::Stress, Range::NOT_NEGATIVE),
             Default("0.0"),
-            "effective vertical pressure at the start",
-        ),
-        key("k0", Quantity(In::Number, loads::COEFFICIENT), Default("1.0"), "horizontal over vertical stress then"),
-        key("stage", Tables(&STAGE), Required, "what is done to it, one after the other"),
+            "Effective vertical pressure at the start.",
+        )
+        .symbol("σ'_v")
+        .example(r#""100 kPa""#),
+        key(
+            "k0",
+            Quantity(In::Number, loads::COEFFICIENT),
+            Default("1.0"),
+            "Ratio of horizontal to vertical effective stress at the start.",
+        )
+        .symbol("K0")
+        .example("1.0"),
+        key("stage", Tables(&STAGE), Required, "Stages of the test, one after the other."),
     ],
     exclusive: &[],
 };
@@ -33,34 +44,78 @@ const STRESS: Kind = Quantity(In::Stress, Range::ANY);
 
 static STAGE: Table = Table {
     header: "stage = [{ test, ... }, ...]",
-    doc: "A part of a test. Strains are logarithmic and count from its start, stresses are Cauchy's at its end; between, \
-          all grow in proportion. `compression` and `pressure` are positive in compression, the components of a mixed \
-          stage in tension, as everywhere else",
+    doc: "A stage of a laboratory test. Strains are logarithmic and count from the start of the stage. Stresses are \
+          Cauchy stresses at its end. In between they change linearly. `compression` and `pressure` are positive in \
+          compression. The components of a mixed stage are positive in tension, as everywhere else.",
     keys: &[
-        key("test", Choice(Path::WORDS), Required, "what is held"),
+        key(
+            "test",
+            Choice(Path::WORDS),
+            Required,
+            "Kind of the test: which components are constant and which one is prescribed.",
+        )
+        .example(r#""triaxial""#),
         key(
             "undrained",
             Flag,
             Default("false"),
-            "whether the volume stays; stresses are total ones then, and the rest is pore pressure",
+            "Whether the volume is constant. Stresses are then total stresses, and the pore pressure makes up the \
+             difference.",
         ),
-        key("compression", GROWTH, Optional, "shortening along y; isotropic: of the volume"),
-        key("pressure", STRESS, Optional, "pressure along y instead; isotropic: on all sides"),
-        key("shear", GROWTH, Optional, "of simple-shear and mixed: motion along x per height; mixed: 0 unless given"),
-        key("shear_stress", STRESS, Optional, "the shear stress instead"),
-        key("strain_xx", GROWTH, Optional, "of a mixed stage, along x"),
-        key("strain_yy", GROWTH, Optional, "along y"),
-        key("strain_zz", GROWTH, Optional, "along z"),
-        key("stress_xx", STRESS, Optional, "of a mixed stage instead of the strain, along x"),
-        key("stress_yy", STRESS, Optional, "along y"),
-        key("stress_zz", STRESS, Optional, "along z"),
+        key(
+            "compression",
+            GROWTH,
+            Optional,
+            "Axial strain along y, positive when the sample shortens. In an isotropic test it is the volumetric \
+             strain.",
+        )
+        .symbol("ε_a")
+        .example("0.1"),
+        key(
+            "pressure",
+            STRESS,
+            Optional,
+            "Axial pressure along y, instead of compression. In an isotropic test it acts on all sides.",
+        )
+        .symbol("σ_a")
+        .example(r#""200 kPa""#),
+        key(
+            "shear",
+            GROWTH,
+            Optional,
+            "Shear strain of simple-shear and mixed tests: displacement along x per height. In a mixed test it is 0 \
+             without this key.",
+        )
+        .symbol("γ")
+        .example("0.2"),
+        key("shear_stress", STRESS, Optional, "Shear stress, instead of shear.").symbol("τ").example(r#""20 kPa""#),
+        key("strain_xx", GROWTH, Optional, "Strain along x, in a mixed test.").symbol("ε_xx").example("0.01"),
+        key("strain_yy", GROWTH, Optional, "Strain along y, in a mixed test.").symbol("ε_yy").example("-0.02"),
+        key("strain_zz", GROWTH, Optional, "Strain along z, in a mixed test.").symbol("ε_zz").example("0.0"),
+        key("stress_xx", STRESS, Optional, "Stress along x, in a mixed test, instead of the strain.")
+            .symbol("σ_xx")
+            .example(r#""-50 kPa""#),
+        key("stress_yy", STRESS, Optional, "Stress along y, in a mixed test, instead of the strain.")
+            .symbol("σ_yy")
+            .example(r#""-100 kPa""#),
+        key("stress_zz", STRESS, Optional, "Stress along z, in a mixed test, instead of the strain.")
+            .symbol("σ_zz")
+            .example(r#""-50 kPa""#),
         key(
             "duration",
             Quantity(In::Duration, Range::POSITIVE),
             Optional,
-            "time that it takes, for a strength that follows the rate; without it there is none",
-        ),
-        key("steps", Count(1, 1_000_000), Default("100"), "equal steps, each a row of the table"),
+            "Duration of the stage, for strengths that depend on the strain rate. Without this key the rate has no \
+             effect.",
+        )
+        .example(r#""1 h""#),
+        key(
+            "steps",
+            Count(1, 1_000_000),
+            Default("100"),
+            "Number of equal steps, each of which is a row of the table.",
+        )
+        .example("100"),
     ],
     exclusive: &[
         one_of(&["compression", "pressure"], false),

@@ -1,4 +1,4 @@
-//! The tables of where water flows in and out.
+//! Schema of drains and inflows.
 
 use super::Kind::{self, *};
 use super::Presence::Optional;
@@ -9,48 +9,70 @@ const PLACE: Kind = Pair(In::Length, Range::ANY);
 
 pub(super) static DRAIN: Table = Table {
     header: "[[drain]]",
-    doc: "A surface through which water flows freely, at a pressure that is given: that of the still water unless it \
-          says another. A body's surface goes with the material; what is not named lets no water through",
+    doc: "A surface through which water flows freely at a given pressure, which is that of the hydrostatic water \
+          unless the drain gives another. A drain at the surface of a body moves with the material. All other \
+          surfaces are impermeable.",
     keys: &[
-        key("name", Name, Optional, "what histories and stages call it"),
+        key("name", Name, Optional, "Name by which histories and stages refer to the drain.").example(r#""river_bed""#),
         key(
             "face",
             Choice(Side::WORDS),
             Optional,
-            "a face of the grid, at which bodies lie, which does not go with the ground: where that settles from it, or \
-             goes away, name the body's surface; in 3-D this, a rectangle or a disc",
-        ),
-        key("from", PLACE, Optional, "one end of a segment of a body's surface at the start"),
-        key("to", PLACE, Optional, "the other end"),
-        key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
-        key("rectangle", loads::RECTANGLE, Optional, "in 3-D: a box whose corners are alike along one axis"),
-        key("disc", Kind::Table(&loads::DISC), Optional, "in 3-D: a disc, the part of it inside the grid"),
+            "A face of the grid to which bodies extend. It does not move with the ground. If the ground moves away \
+             from the face, name the surface of the body instead.",
+        )
+        .example(r#""bottom""#),
+        key("from", PLACE, Optional, "One end of a segment of a body's surface, at the start.").example("[0.0, 6.0]"),
+        key("to", PLACE, Optional, "The other end of the segment.").example("[10.0, 6.0]"),
+        key("circle", Kind::Table(&body::CIRCLE), Optional, "A circle. Only its part inside the grid counts.")
+            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
+        key(
+            "rectangle",
+            loads::RECTANGLE,
+            Optional,
+            "A rectangle in 3-D, given as a box without thickness along one axis.",
+        )
+        .example("{ lower = [0.0, 0.0, 6.0], upper = [4.0, 2.0, 6.0] }"),
+        key("disc", Kind::Table(&loads::DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
+            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
         key(
             "surface",
             Flag,
             Optional,
-            "true: all that is surface of bodies of permeable soil at the start, or as a stage applies it, but for what \
-             lies at faces of the grid that hold it",
+            "With true, the drain is the whole surface of the permeable bodies, except where a face of the grid \
+             supports them. It is their surface at the start, or when a stage activates the drain.",
         ),
-        key("head", Quantity(In::Length, Range::ANY), Optional, "height to which the water there would rise"),
+        key(
+            "head",
+            Quantity(In::Length, Range::ANY),
+            Optional,
+            "Hydraulic head, the height to which the water would rise in a standpipe.",
+        )
+        .example(r#""4 m""#),
         key(
             "head_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY)]),
             Optional,
-            "rows [t, y] instead, t increasing; linear between, constant before the first and after the last",
-        ),
-        key("pressure", Quantity(In::Stress, Range::ANY), Optional, "pore pressure there instead"),
+            "Rows [t, head], instead of head, with t increasing. The head is interpolated linearly, and is constant \
+             before the first row and after the last.",
+        )
+        .example(r#"[[0.0, 4.0], ["1 d", 2.0]]"#),
+        key("pressure", Quantity(In::Stress, Range::ANY), Optional, "Pore pressure at the drain, instead of head.")
+            .example(r#""0 kPa""#),
         key(
             "pressure_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Stress, Range::ANY)]),
             Optional,
-            "rows [t, p] instead, t increasing; linear between, constant before the first and after the last",
-        ),
+            "Rows [t, pressure], instead of pressure, with t increasing. The pressure is interpolated linearly, and \
+             is constant before the first row and after the last.",
+        )
+        .example(r#"[[0.0, "20 kPa"], ["1 d", 0.0]]"#),
         key(
             "seepage",
             Flag,
             Optional,
-            "true: a seepage face instead: above still water no pressure, and water only comes out",
+            "With true, the drain is a seepage face: above the hydrostatic water the pore pressure is zero, and \
+             water flows out only.",
         ),
     ],
     exclusive: &[
@@ -62,31 +84,51 @@ pub(super) static DRAIN: Table = Table {
 
 pub(super) static INFLOW: Table = Table {
     header: "[[inflow]]",
-    doc: "Water that is put in through a segment of a body's surface (3-D: a rectangle or disc), with which it goes",
+    doc: "Water that is put into the ground through a segment of a body's surface, in 3-D through a rectangle or a \
+          disc. It moves with the surface.",
     keys: &[
-        key("name", Name, Optional, "its name in the log, in results and in stages"),
+        key("name", Name, Optional, "Name by which the log, results and stages refer to the inflow.")
+            .example(r#""rain""#),
         key(
             "face",
             Choice(Side::WORDS),
             Optional,
-            "a face of the grid: what of it lies between the ends of the permeable bodies there",
-        ),
-        key("from", PLACE, Optional, "one end of the segment at the start"),
-        key("to", PLACE, Optional, "the other end"),
-        key("rectangle", loads::RECTANGLE, Optional, "in 3-D, instead: a box whose corners are alike along one axis"),
-        key("disc", Kind::Table(&loads::DISC), Optional, "in 3-D, instead: a disc, the part of it inside the grid"),
-        key("rate", Quantity(In::Seepage, Range::ANY), Optional, "volume of water per area and time, into the ground"),
+            "A face of the grid. Only the part counts that lies between the ends of the permeable bodies there.",
+        )
+        .example(r#""top""#),
+        key("from", PLACE, Optional, "One end of the segment, at the start.").example("[0.0, 6.0]"),
+        key("to", PLACE, Optional, "The other end of the segment.").example("[10.0, 6.0]"),
+        key(
+            "rectangle",
+            loads::RECTANGLE,
+            Optional,
+            "A rectangle in 3-D, given as a box without thickness along one axis.",
+        )
+        .example("{ lower = [0.0, 0.0, 6.0], upper = [4.0, 2.0, 6.0] }"),
+        key("disc", Kind::Table(&loads::DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
+            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
+        key(
+            "rate",
+            Quantity(In::Seepage, Range::ANY),
+            Optional,
+            "Volume of water per area and time, positive into the ground.",
+        )
+        .symbol("q")
+        .example(r#""5 mm/h""#),
         key(
             "rate_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Seepage, Range::ANY)]),
             Optional,
-            "rows [t, rate] instead, t increasing; linear between, constant before the first and after the last",
-        ),
+            "Rows [t, rate], instead of rate, with t increasing. The rate is interpolated linearly, and is constant \
+             before the first row and after the last.",
+        )
+        .example(r#"[[0.0, "5 mm/h"], ["6 h", 0.0]]"#),
         key(
             "runoff",
             Flag,
             super::Presence::Default("false"),
-            "true: no more goes in than without pressure at the surface: rain",
+            "With true, only as much water enters as the ground takes without pressure at its surface, as with rain. \
+             The rest runs off.",
         )
         .renamed_from(&["runs_off"]),
     ],

@@ -1,4 +1,4 @@
-//! Constitutive laws in the language: a law's word, its keys, and what it is made of.
+//! Schema of materials and constitutive laws.
 
 use super::Kind::{self, *};
 use super::Presence::{Optional, Required};
@@ -15,23 +15,23 @@ use std::ops::Bound::{Excluded, Included, Unbounded};
 choice! {
     /// Constitutive law.
     pub enum LawName {
-        /// Elastic at any strain.
+        /// Elastic at finite strain (Hencky).
         Hencky = "elastic",
-        /// Elastic, perfectly plastic with friction, dilation and cohesion.
+        /// Mohr-Coulomb: linear elastic, perfectly plastic, with friction, cohesion and dilation.
         MohrCoulomb = "mohr-coulomb",
-        /// The same without friction.
+        /// Tresca: undrained shear strength without friction.
         Tresca = "tresca",
-        /// The same strength with a cone in the place of the pyramid.
+        /// Drucker-Prager: a cone that is fitted to Mohr-Coulomb.
         DruckerPrager = "drucker-prager",
-        /// Elastic, plastic without friction, hardening linearly.
+        /// Von Mises with linear hardening.
         VonMises = "von-mises",
-        /// Mohr-Coulomb whose strength goes from a first to a last value with plastic strain.
+        /// Mohr-Coulomb whose strength falls to residual values with the plastic strain.
         Softening = "mohr-coulomb-softening",
-        /// Clay without drainage whose strength falls with plastic shear and grows with its rate.
+        /// Undrained clay whose strength falls with the plastic shear strain and may grow with its rate.
         SensitiveClay = "sensitive-clay",
-        /// Clay whose stiffness and strength come from the pressure that it has seen.
+        /// Modified Cam-clay: stiffness and strength depend on the effective stress and on the preconsolidation.
         CamClay = "modified-cam-clay",
-        /// Dense granular flow whose friction grows with the rate of shear.
+        /// Dense granular flow with the mu(I) rheology: friction grows with the shear strain rate.
         MuI = "mu-i",
     } misnomers [
         "hardening-soil": "E0012: this model is not available. Use \"mohr-coulomb\", or \"modified-cam-clay\" for soft clay.",
@@ -115,243 +115,360 @@ impl LawName {
 }
 
 words! { Separation {
-    Forgotten = "plastic": "volume that opens is plastic",
-    Closing = "gap": "volume that opens is a gap that closes first",
+    Forgotten = "plastic": "The change of volume is plastic.",
+    Closing = "gap": "The change of volume is a gap, which closes before the material carries pressure again.",
 } earlier ["forgotten": "plastic", "closing": "gap"] }
 
 words! { Decay {
-    Linear = "linear": "in proportion to the plastic strain, until it is softening_strain",
-    Exponential = "exponential": "95 % of the way at softening_strain",
+    Linear = "linear": "In proportion to the plastic strain, until it is softening_strain.",
+    Exponential = "exponential": "Exponentially, with 95 % of the loss at softening_strain.",
 } }
 
 words! { Match {
-    Outer = "outer": "in triaxial compression; stronger than Mohr-Coulomb elsewhere",
-    Inner = "inner": "in triaxial extension; weaker in compression",
-    PlaneStrain = "plane-strain": "as strong in plane strain with associated flow (dilation_angle = friction_angle), weaker with less",
+    Outer = "outer": "In triaxial compression. Elsewhere it is stronger than Mohr-Coulomb.",
+    Inner = "inner": "In triaxial extension. In compression it is weaker than Mohr-Coulomb.",
+    PlaneStrain = "plane-strain": "In plane strain with associated flow (dilation_angle = friction_angle). With less dilation it is weaker.",
 } }
 
 pub(crate) static MATERIAL: Table = Table {
     header: "[material.NAME]",
-    doc: "A material by its name",
+    doc: "A material with a name. Its keys depend on its model: [how to choose a law](../how-to/choose-law.md).",
     keys: &[
-        key("model", Choice(LawName::WORDS), Required, "constitutive law"),
-        key("young", Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE), Required, "Young's modulus"),
-        key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio"),
+        key("model", Choice(LawName::WORDS), Required, "Constitutive law.").example(r#""mohr-coulomb""#),
+        key("young", Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE), Required, "Young's modulus.")
+            .symbol("E")
+            .example(r#""30 MPa""#),
+        key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio.").symbol("ν").example("0.3"),
         key(
             "friction_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "friction angle (mohr-coulomb, drucker-prager and mohr-coulomb-softening, before any plastic strain: required)",
-        ).renamed_from(&["friction"]),
+            "Friction angle. Required by mohr-coulomb, drucker-prager and mohr-coulomb-softening, where it is the \
+             value before any plastic strain.",
+        )
+        .symbol("φ'")
+        .example("30.0")
+        .renamed_from(&["friction"]),
         key(
             "dilation_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "dilation angle, at most friction_angle; 0 unless given",
-        ).renamed_from(&["dilation"]),
+            "Dilation angle, at most the friction angle. Without this key it is 0.",
+        )
+        .symbol("ψ")
+        .example("0.0")
+        .renamed_from(&["dilation"]),
         key(
             "cohesion",
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
             Optional,
-            "cohesion (elastic and von-mises: none; else required)",
-        ),
+            "Cohesion. With model \"tresca\" and \"sensitive-clay\" it is the undrained shear strength. Required by \
+             all models but elastic, von-mises, modified-cam-clay and mu-i, which have none.",
+        )
+        .symbol("c', s_u")
+        .example(r#""10 kPa""#),
         key(
             "residual_friction_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "friction angle after softening_strain (mohr-coulomb-softening: required)",
-        ).renamed_from(&["residual_friction"]),
+            "Friction angle after softening_strain. Required by mohr-coulomb-softening.",
+        )
+        .symbol("φ'_r")
+        .example("25.0")
+        .renamed_from(&["residual_friction"]),
         key(
             "residual_dilation_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "dilation angle after softening_strain, at most residual_friction_angle; 0 unless given",
-        ).renamed_from(&["residual_dilation"]),
+            "Dilation angle after softening_strain, at most residual_friction_angle. Without this key it is 0.",
+        )
+        .symbol("ψ_r")
+        .example("0.0")
+        .renamed_from(&["residual_dilation"]),
         key(
             "residual_cohesion",
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
             Optional,
-            "cohesion after softening_strain (mohr-coulomb-softening: required)",
-        ),
+            "Cohesion after softening_strain. Required by mohr-coulomb-softening.",
+        )
+        .symbol("c'_r")
+        .example(r#""1 kPa""#),
         key(
             "softening_strain",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "plastic strain kappa, the sum of sqrt(2/3) |dev| of its increments, at which the strength has its last value \
-             (mohr-coulomb-softening: required); of sensitive-clay xi = sqrt(3) kappa, in plane strain the accumulated largest \
-             plastic shear, at 95 % of the way, xi_95 (required). Frames have kappa, of both, as plastic_shear_strain; with \
-             band_width it is that of the cells, and a band's own is 2 h / band_width times as much",
-        ),
+            "Plastic strain at which the strength has reached its residual value, or 95 % of the loss with \
+             exponential softening. For mohr-coulomb-softening it is κ, the sum of sqrt(2/3) times the norm of the \
+             deviatoric plastic strain increments. For sensitive-clay it is ξ = sqrt(3) κ at 95 % of the softening. \
+             Required by both.",
+        )
+        .symbol("κ_r, ξ95")
+        .example("0.2"),
         key(
             "sensitivity",
             Quantity(In::Number, Range::of(Included(1.0), Unbounded)),
             Optional,
-            "cohesion over that of the remoulded clay (sensitive-clay: required)",
-        ),
+            "Ratio of the cohesion to that of the remoulded clay. Required by sensitive-clay.",
+        )
+        .symbol("S_t")
+        .example("10.0"),
         key(
             "rate_parameter",
             Quantity(In::Number, Range::NOT_NEGATIVE),
             Optional,
-            "growth of the cohesion per decade of the rate of plastic shear (sensitive-clay in dynamics); none unless given",
-        ),
+            "Relative growth of the cohesion per decade of the plastic shear strain rate, for sensitive-clay in \
+             dynamic and quasi-static-rate analyses. Without this key the cohesion does not depend on the rate.",
+        )
+        .symbol("μ")
+        .example("0.1"),
         key(
             "reference_rate",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "the rate of the laboratory that cohesion is of, 1/s (with rate_parameter)",
-        ),
-        key("softening", Choice(Decay::WORDS), Optional, "how the strength gets there; linear unless given"),
+            "Strain rate of the laboratory test that gave the cohesion, in 1/s. Required with rate_parameter.",
+        )
+        .symbol("ξ̇_ref")
+        .example("1e-5"),
+        key(
+            "softening",
+            Choice(Decay::WORDS),
+            Optional,
+            "How the strength of mohr-coulomb-softening falls with the plastic strain. Without this key it falls \
+             linearly. The strength of sensitive-clay always falls exponentially.",
+        )
+        .example(r#""exponential""#),
         key(
             "band_width",
             Quantity(In::Length, Range::POSITIVE),
             Optional,
-            "of the shear band that softening_strain is of: a band in cells of size h does its work across 2 h, so that \
-             these take softening_strain band_width / (2 h), and the work is that of the band in any grid (crack band; \
-             cells of one size only); without it results depend on the cells",
-        ),
+            "Thickness of the shear band to which softening_strain belongs. Cells of size h then soften at the \
+             strain softening_strain times band_width / (2 h), so that the dissipated energy does not depend on the \
+             cells (crack band). All cells must have the same size. Without this key the results depend on the cells.",
+        )
+        .example(r#""0.02 m""#),
         key(
             "kappa_star",
             Quantity(In::Number, BELOW_1),
             Optional,
-            "kappa*, slope of the unloading line in ln v over ln p' (modified-cam-clay: required, or kappa with void_ratio); \
-             the bulk modulus is p'/kappa*, the shear modulus that of young and poisson, which hold together at one pressure",
-        ),
+            "Slope of the unloading line in ln v over ln p'. The bulk modulus is p'/κ*, and the shear modulus \
+             follows from young and poisson. Required by modified-cam-clay, unless it has kappa and void_ratio.",
+        )
+        .symbol("κ*")
+        .example("0.02"),
         key(
             "lambda_star",
             Quantity(In::Number, BELOW_1),
             Optional,
-            "lambda*, slope of the normal compression line in ln v over ln p', above kappa_star (modified-cam-clay: \
-             required, or lambda with void_ratio)",
-        ),
+            "Slope of the normal compression line in ln v over ln p', larger than kappa_star. Required by \
+             modified-cam-clay, unless it has lambda and void_ratio.",
+        )
+        .symbol("λ*")
+        .example("0.1"),
         key(
             "kappa",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "kappa, slope of the unloading line in v over ln p', instead of kappa_star: kappa* = kappa / (1 + void_ratio)",
-        ),
+            "Slope of the unloading line in v over ln p', instead of kappa_star: κ* = κ / (1 + e0).",
+        )
+        .symbol("κ")
+        .example("0.05"),
         key(
             "lambda",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "lambda, slope of the normal compression line in v over ln p', instead of lambda_star: lambda* = lambda / \
-             (1 + void_ratio)",
-        ),
+            "Slope of the normal compression line in v over ln p', instead of lambda_star: λ* = λ / (1 + e0).",
+        )
+        .symbol("λ")
+        .example("0.25"),
         key(
             "void_ratio",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "e0, void ratio at the start (modified-cam-clay: required with kappa and lambda)",
-        ),
+            "Void ratio at the start. Required with kappa and lambda.",
+        )
+        .symbol("e0")
+        .example("1.2"),
         key(
             "critical_state_ratio",
             Quantity(In::Number, BELOW_3),
             Optional,
-            "M = q/p at the critical state, 6 sin(phi)/(3 - sin(phi)) in triaxial compression (modified-cam-clay: \
-             required); the same in all directions of shear",
-        ).renamed_from(&["critical_ratio"]),
+            "Ratio q/p' at the critical state, 6 sin(φ')/(3 - sin(φ')) in triaxial compression. It is the same in \
+             all directions of shear. Required by modified-cam-clay.",
+        )
+        .symbol("M")
+        .example("1.2")
+        .renamed_from(&["critical_ratio"]),
         key(
             "preconsolidation",
             Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
             Optional,
-            "pressure at the tip of the yield surface at the start (modified-cam-clay: this or ocr)",
-        ),
+            "Mean effective stress at the tip of the yield surface at the start. modified-cam-clay requires this or \
+             ocr.",
+        )
+        .symbol("p'_c")
+        .example(r#""100 kPa""#),
         key(
             "ocr",
             Quantity(In::Number, Range::of(Included(1.0), Unbounded)),
             Optional,
-            "size of the yield surface over that through the stress at the start (modified-cam-clay); of laws with friction \
-             largest vertical stress ever over that of the start, and k0 = (1 - sin(phi)) ocr^sin(phi)",
-        ),
+            "Overconsolidation ratio. For modified-cam-clay it is the size of the yield surface over that through \
+             the stress at the start. For laws with a friction angle it gives k0 = (1 - sin(φ')) OCR^sin(φ').",
+        )
+        .symbol("OCR")
+        .example("1.5"),
+        key("mu_s", Quantity(In::Number, BELOW_3), Optional, "Friction coefficient of slow shear. Required by mu-i.")
+            .symbol("μ_s")
+            .example("0.38"),
         key(
-            "mu_s",
+            "mu_2",
             Quantity(In::Number, BELOW_3),
             Optional,
-            "friction of slow shear, the tangent of the slope at rest (mu-i: required, in dynamics)",
-        ),
-        key("mu_2", Quantity(In::Number, BELOW_3), Optional, "friction of fast shear, at least mu_s (mu-i: required)"),
+            "Friction coefficient of fast shear, at least mu_s. Required by mu-i.",
+        )
+        .symbol("μ_2")
+        .example("0.64"),
         key(
             "inertial_number",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "I_0 at which half of mu_2 - mu_s is gained; I = rate of shear times grain_diameter sqrt(grain_density/p) \
-             (mu-i: required)",
-        ),
-        key("grain_diameter", Quantity(In::Length, Range::POSITIVE), Optional, "of the grains (mu-i: required)"),
-        key("grain_density", Quantity(In::Density, Range::POSITIVE), Optional, "of the grains (mu-i: required)"),
+            "Inertial number at which half of μ_2 - μ_s is reached. The inertial number is the shear strain rate \
+             times grain_diameter times sqrt(grain_density / p). Required by mu-i.",
+        )
+        .symbol("I_0")
+        .example("0.3"),
+        key(
+            "grain_diameter",
+            Quantity(In::Length, Range::POSITIVE),
+            Optional,
+            "Diameter of the grains. Required by mu-i.",
+        )
+        .symbol("d")
+        .example(r#""1 mm""#),
+        key(
+            "grain_density",
+            Quantity(In::Density, Range::POSITIVE),
+            Optional,
+            "Density of the grains. Required by mu-i.",
+        )
+        .symbol("ρ_s")
+        .example("2500.0"),
         key(
             "fit",
             Choice(Match::WORDS),
             Optional,
-            "where drucker-prager meets mohr-coulomb; plane-strain unless given, which is warned of where it is none",
-        ).renamed_from(&["match"]),
+            "Where the cone of drucker-prager meets the pyramid of mohr-coulomb. Without this key it is \
+             \"plane-strain\". The program warns if the strength then differs from that of mohr-coulomb.",
+        )
+        .example(r#""plane-strain""#)
+        .renamed_from(&["match"]),
         key(
             "yield_stress",
             Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
             Optional,
-            "uniaxial (von-mises: required)",
-        ),
+            "Uniaxial yield stress. Required by von-mises.",
+        )
+        .symbol("σ_y")
+        .example(r#""200 kPa""#),
         key(
             "hardening",
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
             Optional,
-            "yield stress gained per plastic strain (von-mises); 0 unless given",
-        ),
+            "Growth of the yield stress per plastic strain, for von-mises. Without this key it is 0.",
+        )
+        .symbol("H")
+        .example(r#""1 MPa""#),
         key(
             "separation",
             Choice(Separation::WORDS),
             Optional,
-            "volume that opens at the apex of mohr-coulomb: plastic, or a gap that closes first; plastic unless given",
-        ),
-        key("unit_weight", Quantity(In::UnitWeight, Range::POSITIVE), Optional, "density = unit_weight / 9.81 m/s2"),
-        key("density", Quantity(In::Density, Range::POSITIVE), Optional, "neither: weightless, in dynamics an error"),
+            "Volume change at the apex of mohr-coulomb: plastic, or a gap that must close before the material \
+             carries pressure again. Without this key it is plastic.",
+        )
+        .example(r#""gap""#),
+        key(
+            "unit_weight",
+            Quantity(In::UnitWeight, Range::POSITIVE),
+            Optional,
+            "Unit weight. The density is the unit weight divided by 9.81 m/s2.",
+        )
+        .symbol("γ")
+        .example(r#""20 kN/m3""#),
+        key(
+            "density",
+            Quantity(In::Density, Range::POSITIVE),
+            Optional,
+            "Density. A material without density and unit weight is weightless, which is an error in dynamic \
+             analyses.",
+        )
+        .symbol("ρ")
+        .example("2000.0"),
         key(
             "saturated_unit_weight",
             Quantity(In::UnitWeight, Range::POSITIVE),
             Optional,
-            "of what lies below the water table at the start; unit_weight, or what density is, unless given",
-        ),
+            "Unit weight below the water table at the start. Without this key it is that above the water table.",
+        )
+        .symbol("γ_sat")
+        .example(r#""21 kN/m3""#),
         key(
             "ru",
             Quantity(In::Number, BELOW_1),
             Optional,
-            "pore pressure over the weight straight above at the start, instead of [water]; its points carry it",
-        ),
-        key("k0", Quantity(In::Number, loads::COEFFICIENT), Optional, "horizontal over vertical stress at the start"),
+            "Pore pressure ratio: pore pressure over the weight of the soil vertically above, at the start, instead \
+             of [water]. The material points keep this pressure.",
+        )
+        .symbol("r_u")
+        .example("0.25"),
+        key(
+            "k0",
+            Quantity(In::Number, loads::COEFFICIENT),
+            Optional,
+            "Ratio of horizontal to vertical effective stress at the start.",
+        )
+        .symbol("K0")
+        .example("0.5"),
         key(
             "drainage",
             Choice(Drainage::WORDS),
             Optional,
-            "what its pore water does (consolidation); that of [water] unless given",
-        ),
+            "Drainage of this material in consolidation and dynamic analyses. Without this key it is that of \
+             [water].",
+        )
+        .example(r#""coupled""#),
         key(
             "porosity",
             Quantity(In::Number, BELOW_1),
             Optional,
-            "share of pores in the volume at the start (coupled and undrained: required)",
-        ),
+            "Porosity at the start. Required with drainage \"coupled\" and \"undrained\".",
+        )
+        .symbol("n")
+        .example("0.4"),
         key(
             "permeability",
             Either(In::Seepage, Range::POSITIVE),
             Optional,
-            "hydraulic conductivity, or that along each axis (coupled: required)",
-        ),
+            "Hydraulic conductivity, or one along each axis. Required with drainage \"coupled\".",
+        )
+        .symbol("k")
+        .example(r#""1e-8 m/s""#),
         key(
             "permeability_law",
             Choice(PermeabilityLaw::WORDS),
             Optional,
-            "how it follows the porosity; constant unless given",
-        ),
+            "How the permeability depends on the porosity. Without this key it is constant.",
+        )
+        .example(r#""kozeny-carman""#),
         key(
             "retention",
             Kind::Table(&RETENTION),
             Optional,
-            "how much water it keeps under suction (coupled); its pores stay full unless given",
+            "Soil-water retention curve of a coupled material. Without this table the pores stay saturated.",
         ),
         key(
             "damping",
             Kind::Table(&DAMPING),
             Optional,
-            "viscous stress beside that of the law (dynamic); none unless given",
+            "Viscous damping in dynamic analyses. Without this table there is none.",
         ),
     ],
     exclusive: &[
@@ -364,24 +481,42 @@ pub(crate) static MATERIAL: Table = Table {
 
 static RETENTION: Table = Table {
     header: "[material.NAME] retention",
-    doc: "Van Genuchten's curve, by alpha and n: effective saturation (1 + (alpha s)^n)^(1/n - 1) under the suction head s, \
-          with Mualem's permeability; or a measured curve. Bishop's effective stress goes with it",
+    doc: "Soil-water retention curve with the effective stress of Bishop. It is that of van Genuchten, with the \
+          effective saturation (1 + (alpha s)^n)^(1/n - 1) at the suction head s and the permeability of Mualem, or a \
+          measured curve.",
     keys: &[
-        key("alpha", Quantity(In::Number, Range::POSITIVE), Optional, "1/m, over the head at which air enters"),
-        key("n", Quantity(In::Number, PORES), Optional, "the larger, the more alike the pores; required with alpha"),
+        key(
+            "alpha",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "Van Genuchten's alpha in 1/m, about the inverse of the suction head at which air enters.",
+        )
+        .symbol("α")
+        .example("2.0"),
+        key(
+            "n",
+            Quantity(In::Number, PORES),
+            Optional,
+            "Van Genuchten's n. The larger it is, the more uniform the pores are. Required with alpha.",
+        )
+        .symbol("n")
+        .example("1.6"),
         key(
             "curve",
             Rows(&[(In::Length, Range::NOT_NEGATIVE), (In::Number, SHARES), (In::Number, SHARES)]),
             Optional,
-            "rows [suction head, saturation, relative permeability] instead, the first [0, 1, 1]; smooth and falling between, \
-             constant beyond the last",
-        ),
+            "Rows of suction head, saturation and relative permeability, instead of alpha and n. The first row is \
+             [0, 1, 1]. The curve is smooth and falls between the rows, and is constant beyond the last one.",
+        )
+        .example("[[0.0, 1.0, 1.0], [2.0, 0.6, 0.1]]"),
         key(
             "residual",
             Quantity(In::Number, SHARE),
             super::Presence::Default("0"),
-            "saturation that no suction removes",
-        ),
+            "Saturation that no suction removes.",
+        )
+        .symbol("S_r")
+        .example("0.1"),
     ],
     exclusive: &[one_of(&["alpha", "curve"], true)],
 };
@@ -392,11 +527,21 @@ const SHARES: Range = Range::of(Included(0.0), Included(1.0));
 
 static DAMPING: Table = Table {
     header: "[material.NAME] damping",
-    doc: "Kelvin-Voigt damping: the elastic stiffness times ratio/(pi frequency) times the rate of elastic strain. Higher \
-          frequencies are damped more, in proportion; motion without strain and plastic flow are not",
+    doc: "Kelvin-Voigt damping: the elastic stiffness times ratio/(π frequency) times the rate of elastic strain. \
+          The damping ratio grows in proportion to the frequency. Motion without strain and plastic flow are not \
+          damped.",
     keys: &[
-        key("ratio", Quantity(In::Number, BELOW_1), Required, "of the damping to the critical one, at the frequency"),
-        key("frequency", Quantity(In::Number, Range::POSITIVE), Required, "Hz"),
+        key(
+            "ratio",
+            Quantity(In::Number, BELOW_1),
+            Required,
+            "Damping ratio (part of critical damping) at this frequency.",
+        )
+        .symbol("ξ")
+        .example("0.05"),
+        key("frequency", Quantity(In::Number, Range::POSITIVE), Required, "Frequency in Hz.")
+            .symbol("f")
+            .example("2.0"),
     ],
     exclusive: &[],
 };

@@ -1,4 +1,4 @@
-//! The tables of what acts on the bodies besides gravity, and of what varies with depth.
+//! Schema of footings, prescribed displacements, loads, strength reduction and initial stress.
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
@@ -13,8 +13,6 @@ pub(super) const PATH: Kind = Course(In::Length);
 pub(super) const RECTANGLE: Kind = Kind::Table(&body::BOX);
 pub(super) const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
 /// Of a load whose direction may change.
-const FORCES: &str = "rows [t, x, y] instead (3-D: also z), as they are at the times t, increasing; linear between, from \
-                      0 at time 0, constant after the last; time 0 is that of the stage that applies it";
 pub(super) const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
 /// That strength is divided by.
 pub(super) const FACTOR: Range = Range::of(Included(0.1), Included(100.0));
@@ -25,22 +23,25 @@ pub(super) const COEFFICIENT: Range = Range::of(Included(0.0), Included(100.0));
 pub(super) const SUPPORT: Kind = ChoiceOr(Support::WORDS, &CONTACT);
 
 static CONTACT: Table = Table {
-    header: "FACE = { friction_coefficient, separates }",
-    doc: "A face in frictional contact (Coulomb) with the material, which may separate from it",
+    header: "left = { friction_coefficient, separates }",
+    doc: "Frictional contact (Coulomb) of the material with a face of the grid. The material may separate from it.",
     keys: &[
         key(
             "friction_coefficient",
             Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
             Required,
-            "tangent of the angle of friction between face and material; [strength_reduction] divides it, too",
+            "Friction coefficient, the tangent of the friction angle of the interface. [strength_reduction] divides \
+             it too.",
         )
+        .symbol("μ")
+        .example("0.3")
         .renamed_from(&["friction"]),
         key(
             "separates",
             Flag,
             Default("true"),
-            "whether the material may separate from the face; false: the normal component stays fixed, and there is no friction \
-             under tension",
+            "Whether the material may separate. With false the normal displacement stays zero, and under tension \
+             there is no friction.",
         )
         .renamed_from(&["lifts"]),
     ],
@@ -49,28 +50,50 @@ static CONTACT: Table = Table {
 
 pub(super) static FOOTING: Table = Table {
     header: "[footing]",
-    doc: "A rigid strip, in 3-D a plate, that moves on a given way and holds the material at its base (section 3.3)",
+    doc: "A rigid footing, in 3-D a rigid plate, with a prescribed displacement. The material at its base moves with \
+          it.",
     keys: &[
-        key("from", PLACE, Optional, "one end of its base at the start"),
-        key("to", PLACE, Optional, "the other end"),
-        key("rectangle", RECTANGLE, Optional, "in 3-D, instead: a box whose corners are alike along one axis"),
-        key("disc", Kind::Table(&DISC), Optional, "in 3-D, instead: a disc, the part of it inside the grid"),
-        key("displacement", DISPLACEMENT, Optional, "reached at the end, linear in time"),
-        key("velocity", VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
+        key("from", PLACE, Optional, "One end of its base, at the start.").example("[0.0, 10.0]"),
+        key("to", PLACE, Optional, "The other end of its base.").example("[2.0, 10.0]"),
+        key("rectangle", RECTANGLE, Optional, "A rectangle in 3-D, given as a box without thickness along one axis.")
+            .example("{ lower = [0.0, 0.0, 6.0], upper = [1.0, 1.0, 6.0] }"),
+        key("disc", Kind::Table(&DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
+            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
+        key("displacement", DISPLACEMENT, Optional, "Displacement at the end of the run. It grows linearly with time.")
+            .symbol("u")
+            .example("[0.0, -0.2]"),
+        key(
+            "velocity",
+            VELOCITY,
+            Optional,
+            "Constant velocity. In a quasi-static analysis it is a number: metres per unit of pseudo-time.",
+        )
+        .symbol("v")
+        .example("[0.0, -0.01]"),
         key(
             "path",
             PATH,
             Optional,
-            "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
-        ),
+            "Rows [t, ux, uy], in 3-D [t, ux, uy, uz], with t increasing. The displacement is interpolated linearly, \
+             starts from zero at time 0 and is constant after the last row.",
+        )
+        .example("[[0.0, 0.0, 0.0], [1.0, 0.0, -0.2]]"),
         key(
             "interface",
             ChoiceOr(Base::WORDS, &FRICTIONAL),
             Default("\"smooth\""),
-            "\"smooth\" fixes the normal component, \"rough\" all components; or a table: frictional contact",
+            "Interface with the soil: \"smooth\" prescribes the normal displacement only, \"rough\" all components. \
+             A table makes it a frictional contact.",
         )
+        .example(r#""rough""#)
         .renamed_from(&["base"]),
-        key("name", Name, Optional, "what stages and histories call it; \"footing\" unless given"),
+        key(
+            "name",
+            Name,
+            Optional,
+            "Name by which stages and histories refer to it. Without this key it is \"footing\".",
+        )
+        .example(r#""footing""#),
     ],
     exclusive: &[
         one_of(&["from", "rectangle", "disc"], true),
@@ -81,39 +104,57 @@ pub(super) static FOOTING: Table = Table {
 
 pub(super) static DISC: Table = Table {
     header: "disc = { centre, radius, normal }",
-    doc: "A flat disc",
+    doc: "A flat disc.",
     keys: &[
-        key("centre", Vector(In::Length, Range::ANY), Required, "its centre").renamed_from(&["center"]),
-        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "its radius"),
-        key("normal", Choice(Axis::WORDS), Default("\"z\""), "the axis that is normal to it"),
+        key("centre", Vector(In::Length, Range::ANY), Required, "Its centre.")
+            .example("[0.0, 0.0, 2.0]")
+            .renamed_from(&["center"]),
+        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "Its radius.").example(r#""1 m""#),
+        key("normal", Choice(Axis::WORDS), Default("\"z\""), "The axis normal to the disc.").example(r#""z""#),
     ],
     exclusive: &[],
 };
 
 pub(super) static PRESCRIBED: Table = Table {
     header: "[[prescribed]]",
-    doc: "Motion of a face of the grid, or of a segment, in 3-D of a plate, which holds the material at it",
+    doc: "A prescribed displacement of a face of the grid or of a segment, in 3-D of a plate. The material at it \
+          moves with it.",
     keys: &[
-        key("face", Choice(Side::WORDS), Optional, "the face; free in [boundary]"),
-        key("from", PLACE, Optional, "one end of a segment at the start"),
-        key("to", PLACE, Optional, "the other end"),
-        key("rectangle", RECTANGLE, Optional, "in 3-D: a box whose corners are alike along one axis"),
-        key("disc", Kind::Table(&DISC), Optional, "in 3-D: a disc, the part of it inside the grid"),
-        key("displacement", DISPLACEMENT, Optional, "reached at the end, linear in time"),
-        key("velocity", VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
+        key("face", Choice(Side::WORDS), Optional, "The face of the grid, which must be free in [boundary].")
+            .example(r#""left""#),
+        key("from", PLACE, Optional, "One end of the segment, at the start.").example("[0.0, 2.0]"),
+        key("to", PLACE, Optional, "The other end of the segment.").example("[0.0, 4.0]"),
+        key("rectangle", RECTANGLE, Optional, "A rectangle in 3-D, given as a box without thickness along one axis.")
+            .example("{ lower = [0.0, 0.0, 6.0], upper = [1.0, 1.0, 6.0] }"),
+        key("disc", Kind::Table(&DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
+            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
+        key("displacement", DISPLACEMENT, Optional, "Displacement at the end of the run. It grows linearly with time.")
+            .symbol("u")
+            .example("[0.1, 0.0]"),
+        key(
+            "velocity",
+            VELOCITY,
+            Optional,
+            "Constant velocity. In a quasi-static analysis it is a number: metres per unit of pseudo-time.",
+        )
+        .symbol("v")
+        .example("[0.01, 0.0]"),
         key(
             "path",
             PATH,
             Optional,
-            "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
-        ),
+            "Rows [t, ux, uy], in 3-D [t, ux, uy, uz], with t increasing. The displacement is interpolated linearly, \
+             starts from zero at time 0 and is constant after the last row.",
+        )
+        .example("[[0.0, 0.0, 0.0], [1.0, 0.1, 0.0]]"),
         key(
             "components",
             ChoiceOr(Components::WORDS, &FRICTIONAL),
             Default("\"all\""),
-            "which components are prescribed; or a table, of a segment: frictional contact",
-        ),
-        key("name", Name, Optional, "what stages and histories call it"),
+            "Components that are prescribed. For a segment, a table makes it a frictional contact.",
+        )
+        .example(r#""normal""#),
+        key("name", Name, Optional, "Name by which stages and histories refer to it.").example(r#""wall""#),
     ],
     exclusive: &[
         one_of(&["face", "from", "rectangle", "disc"], true),
@@ -123,22 +164,26 @@ pub(super) static PRESCRIBED: Table = Table {
 };
 
 static FRICTIONAL: Table = Table {
-    header: "STRIP = { friction_coefficient, separates }",
-    doc: "A strip in frictional contact (Coulomb) with the material on one side of it, which may separate from it",
+    header: "interface = { friction_coefficient, separates }",
+    doc: "Frictional contact (Coulomb) of a footing or a prescribed segment with the material on one side of it. The \
+          material may separate from it.",
     keys: &[
         key(
             "friction_coefficient",
             Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
             Required,
-            "tangent of the angle of friction between strip and material; [strength_reduction] divides it, too",
+            "Friction coefficient, the tangent of the friction angle of the interface. [strength_reduction] divides \
+             it too.",
         )
+        .symbol("μ")
+        .example("0.3")
         .renamed_from(&["friction"]),
         key(
             "separates",
             Flag,
             Default("true"),
-            "whether the material may separate from the strip; false: the normal component stays fixed, and there is no friction \
-             under tension",
+            "Whether the material may separate. With false the normal displacement stays prescribed, and under \
+             tension there is no friction.",
         )
         .renamed_from(&["lifts"]),
     ],
@@ -147,50 +192,66 @@ static FRICTIONAL: Table = Table {
 
 pub(super) static TRACTION: Table = Table {
     header: "[[traction]]",
-    doc: "A load on a segment of a body's surface, on a circle, or in 3-D on a rectangle, disc, sphere or triangles, \
-          which it follows",
+    doc: "A stress on a segment of a body's surface or on a circle, in 3-D on a rectangle, a disc, a sphere or \
+          triangles. It moves with the surface.",
     keys: &[
-        key("from", PLACE, Optional, "one end of the segment at the start"),
-        key("to", PLACE, Optional, "the other end"),
-        key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead: the part of it inside the grid"),
-        key("rectangle", RECTANGLE, Optional, "in 3-D, instead: a box whose corners are alike along one axis"),
-        key("disc", Kind::Table(&DISC), Optional, "in 3-D, instead: a disc, the part of it inside the grid"),
-        key(
-            "sphere",
-            Kind::Table(&body::SPHERE),
-            Optional,
-            "in 3-D, instead: a sphere, the part of it inside the grid",
-        ),
-        key("surface", Kind::Table(&body::SURFACE), Optional, "in 3-D, instead: a surface of triangles at bodies"),
+        key("from", PLACE, Optional, "One end of the segment, at the start.").example("[0.0, 6.0]"),
+        key("to", PLACE, Optional, "The other end of the segment.").example("[10.0, 6.0]"),
+        key("circle", Kind::Table(&body::CIRCLE), Optional, "A circle. Only its part inside the grid counts.")
+            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
+        key("rectangle", RECTANGLE, Optional, "A rectangle in 3-D, given as a box without thickness along one axis.")
+            .example("{ lower = [0.0, 0.0, 6.0], upper = [4.0, 2.0, 6.0] }"),
+        key("disc", Kind::Table(&DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
+            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
+        key("sphere", Kind::Table(&body::SPHERE), Optional, "A sphere in 3-D. Only its part inside the grid counts.")
+            .example(r#"{ centre = [0.0, 0.0, 4.0], radius = "1 m" }"#),
+        key("surface", Kind::Table(&body::SURFACE), Optional, "A surface of triangles at bodies, in 3-D.")
+            .example(r#"{ triangles = { file = "surface.stl" } }"#),
         key(
             "stress",
             PairProfile(In::Stress, Range::ANY, &STRESSES_PROFILE),
             Optional,
-            "force per area of the start, along the axes, or by depth",
-        ),
+            "Force per area of the undeformed surface along the axes. It keeps its direction (dead load).",
+        )
+        .example(r#"[0.0, "-50 kPa"]"#),
         key(
             "pressure",
             Profile(In::Stress, Range::ANY, &STRESS_PROFILE),
             Optional,
-            "instead of stress: normal to the surface as it turns and stretches, against the body that lies on one side",
-        ),
-        key("stress_path", Course(In::Stress), Optional, FORCES),
+            "Pressure normal to the deformed surface, against the body on one side of it (follower load), instead of \
+             stress.",
+        )
+        .example(r#""50 kPa""#),
+        key(
+            "stress_path",
+            Course(In::Stress),
+            Optional,
+            "Rows [t, x, y], in 3-D [t, x, y, z], of the stress, instead of stress, with t increasing. The stress is \
+             interpolated linearly. It is zero at time 0, unless a row gives another value, and constant after the \
+             last row. Time 0 is the beginning of the stage that activates the load.",
+        )
+        .example(r#"[[0.0, 0.0, 0.0], [1.0, 0.0, "-50 kPa"]]"#),
         key(
             "pressure_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Stress, Range::ANY)]),
             Optional,
-            "rows [t, p] of a pressure instead, t increasing; linear between, from 0 at time 0, constant after the last; time 0 \
-             is that of the stage that applies it",
-        ),
-        key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
+            "Rows [t, pressure], instead of pressure, with t increasing. The pressure is interpolated linearly. It \
+             is zero at time 0, unless a row gives another value, and constant after the last row. Time 0 is the \
+             beginning of the stage that activates the load.",
+        )
+        .example(r#"[[0.0, 0.0], [1.0, "50 kPa"]]"#),
+        key("ramp", RAMP, Default("0.0"), "Time over which the load grows to its full value. With 0 it acts at once.")
+            .example("1.0"),
         key(
             "amplitude",
             AMPLITUDE,
             Optional,
-            "instead of ramp: rows [t, share that acts], t increasing; linear \
-            between, from 0 at time 0, constant after the last; time 0 is that of the stage that applies it",
-        ),
-        key("name", Name, Optional, "what stages call it"),
+            "Rows [t, factor] of the load, instead of ramp, with t increasing. The factor is interpolated linearly. \
+             It is zero at time 0, unless a row gives another value, and constant after the last row. Time 0 is the \
+             beginning of the stage that activates the load.",
+        )
+        .example("[[0.0, 0.0], [1.0, 1.0]]"),
+        key("name", Name, Optional, "Name by which stages refer to it.").example(r#""surcharge""#),
     ],
     exclusive: &[
         one_of(&["from", "circle", "rectangle", "disc", "sphere", "surface"], true),
@@ -202,138 +263,171 @@ pub(super) static TRACTION: Table = Table {
 
 pub(super) static SHAKING: Table = Table {
     header: "[shaking]",
-    doc: "Acceleration of the ground, in whose frame the case is (dynamic): supports rest, displacements and velocities \
-          are those relative to the ground",
+    doc: "Acceleration of the ground in a dynamic analysis. The case is described in the moving frame of the ground: \
+          supports are at rest, and displacements and velocities are relative to the ground.",
     keys: &[key(
         "acceleration",
         Course(In::Acceleration),
         Required,
-        "rows [t, ax, ay], in 3-D [t, ax, ay, az], t increasing; linear between, from 0 at time 0, and 0 after the last",
-    )],
+        "Rows [t, ax, ay], in 3-D [t, ax, ay, az], with t increasing. The acceleration is interpolated linearly. \
+             It is zero at time 0, unless a row gives another value, and zero after the last row.",
+    )
+    .symbol("a")
+    .example("[[0.0, 0.0, 0.0], [0.5, 2.0, 0.0], [1.0, 0.0, 0.0]]")],
     exclusive: &[],
 };
 
 pub(super) static POINT_LOAD: Table = Table {
     header: "[[point_load]]",
-    doc: "A force at a point of a body, which it follows",
+    doc: "A force at a point of a body. It moves with the point.",
     keys: &[
-        key("at", Vector(In::Length, Range::ANY), Required, "where at the start"),
+        key("at", Vector(In::Length, Range::ANY), Required, "Place of the point at the start.").example("[2.0, 6.0]"),
         key(
             "force",
             Vector(In::LineForce, Range::ANY),
             Optional,
-            "along the axes, per metre of thickness; in axisymmetry of the whole ring, and in 3-D, in N",
-        ),
-        key("force_path", Course(In::LineForce), Optional, FORCES),
-        key("ramp", RAMP, Default("0.0"), "time over which it grows; 0: at once"),
+            "Force along the axes, in N per metre of thickness. In axisymmetry it is the force on the whole ring, \
+             and in 3-D the force itself, both in N.",
+        )
+        .symbol("F")
+        .example(r#"[0.0, "-10 kN/m"]"#),
+        key(
+            "force_path",
+            Course(In::LineForce),
+            Optional,
+            "Rows [t, x, y], in 3-D [t, x, y, z], of the force, instead of force, with t increasing. The force is \
+             interpolated linearly. It is zero at time 0, unless a row gives another value, and constant after the \
+             last row. Time 0 is the beginning of the stage that activates the load.",
+        )
+        .example(r#"[[0.0, 0.0, 0.0], [1.0, 0.0, "-10 kN/m"]]"#),
+        key("ramp", RAMP, Default("0.0"), "Time over which the load grows to its full value. With 0 it acts at once.")
+            .example("1.0"),
         key(
             "amplitude",
             AMPLITUDE,
             Optional,
-            "instead of ramp: rows [t, share that acts], t increasing; linear \
-            between, from 0 at time 0, constant after the last; time 0 is that of the stage that applies it",
-        ),
-        key("name", Name, Optional, "what stages call it"),
+            "Rows [t, factor] of the load, instead of ramp, with t increasing. The factor is interpolated linearly. \
+             It is zero at time 0, unless a row gives another value, and constant after the last row. Time 0 is the \
+             beginning of the stage that activates the load.",
+        )
+        .example("[[0.0, 0.0], [1.0, 1.0]]"),
+        key("name", Name, Optional, "Name by which stages refer to it.").example(r#""crane""#),
     ],
     exclusive: &[one_of(&["force", "force_path"], true), one_of(&["ramp", "amplitude", "force_path"], false)],
 };
 
 pub(super) static REDUCTION: Table = Table {
     header: "[strength_reduction]",
-    doc: "Strength of all materials divided by a factor: c/F, atan(tan(phi)/F), psi at most the new phi (section 3.2)",
+    doc: "Division of the strength of all materials by a factor F: the cohesion is c/F, the friction angle \
+          atan(tan(φ)/F), and the dilation angle at most the new friction angle.",
     keys: &[
-        key("factor", Quantity(In::Number, FACTOR), Required, "the factor F"),
-        key("elastic", Flag, Default("false"), "strength without bound instead: every material by its elastic law"),
+        key("factor", Quantity(In::Number, FACTOR), Required, "The factor F.").symbol("F").example("1.3"),
+        key("elastic", Flag, Default("false"), "With true, all materials are elastic, without a strength."),
         key(
             "stiffness",
             Quantity(In::Number, Range::POSITIVE),
             Default("1.0"),
-            "Young's moduli times this, of all materials",
-        ),
+            "Factor of Young's modulus of all materials.",
+        )
+        .example("10.0"),
         key(
             "unloaded",
             Flag,
             Default("false"),
-            "start without stress: [initial] is left out, and loads that act at once grow over the run",
+            "With true, the run starts without stress: [initial] is ignored, and loads that would act at once grow \
+             over the run.",
         ),
         key(
             "stage",
             Text(64),
             Optional,
-            "reduce at the end of the stage of that name, in the state that it leaves; \"start\": of what is before \
-             the first stage; \"end\": of the run. Later stages do not begin; with unloaded = true: what is there \
-             then, from the start on. Water that flows rests: see `drainage`",
-        ),
+            "Name of a stage. The strength is reduced at its end, from the state that is reached there. \"start\" is \
+             the state before the first stage, \"end\" that at the end of the run. Later stages do not begin. With \
+             unloaded = true, the bodies and loads of that time act from the start. Pore water does not flow during \
+             the reduction, see `drainage`.",
+        )
+        .example(r#""end""#),
         key(
             "drainage",
             Choice(Failure::WORDS),
             Optional,
-            "how the ground fails that water has flowed through until the end of that stage; absent: \"drained\", or \
-             \"undrained\" if it can flow through none of the soils",
-        ),
+            "Drainage during the failure, if a material has pore-water flow. Without this key it is \"drained\", or \
+             \"undrained\" if no soil is permeable.",
+        )
+        .example(r#""drained""#),
         key(
             "steps",
             Count(0, 1000),
             Default("10"),
-            "equal parts of the reduction that follow the end of the stage, a nominal step each; 0: the run ends there",
-        ),
+            "Number of equal steps, of the nominal length, over which the strength is reduced after the end of the \
+             stage. With 0 the run ends there.",
+        )
+        .example("10"),
     ],
     exclusive: &[],
 };
 
 pub(super) static INITIAL: Table = Table {
     header: "[initial]",
-    doc: "Stress at the start, under the full gravity; displacements count from there",
+    doc: "Stress at the start, under full gravity. Displacements count from this state.",
     keys: &[
         key(
             "k0",
             Quantity(In::Number, COEFFICIENT),
             Optional,
-            "weight of what lies above as vertical stress, k0 times it as horizontal; of materials without their own k0",
-        ),
-        key("gravity", Choice(Start::WORDS), Optional, "elastic equilibrium under the loads at time 0 instead"),
+            "K0 procedure: the vertical stress is the weight of the material above, and the horizontal stress is k0 \
+             times the vertical one. It applies to materials that do not give their k0.",
+        )
+        .symbol("K0")
+        .example("0.5"),
+        key("gravity", Choice(Start::WORDS), Optional, "Elastic equilibrium under the loads at time 0, instead of k0.")
+            .example(r#""elastic""#),
         key(
             "equilibrium",
             Choice(Settled::WORDS),
             Optional,
-            "what that stress is led to under the loads at time 0, before the first step; absent: it stays as it is",
-        ),
+            "Equilibrium to which this stress is brought under the loads at time 0, before the first step. Without \
+             this key the stress stays as it is.",
+        )
+        .example(r#""plastic""#),
     ],
     exclusive: &[one_of(&["k0", "gravity"], false)],
 };
 
 pub(super) static STRESS_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of a stress",
-    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; in \
-          3-D the height is z",
+    doc: "A stress that grows linearly with depth: value + per_metre (at_y - y), also above at_y. In 3-D the height \
+          is z. A material point keeps the value of its place at the start.",
     keys: &[
-        key("value", Quantity(In::Stress, Range::ANY), Required, "at the height at_y"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; in 3-D z"),
-        key("per_metre", Gradient(In::Stress), Required, "growth per metre of depth"),
+        key("value", Quantity(In::Stress, Range::ANY), Required, "Value at the height at_y.").example(r#""20 kPa""#),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "The height, in 3-D z.").example(r#""10 m""#),
+        key("per_metre", Gradient(In::Stress), Required, "Growth per metre of depth.").example(r#""2 kPa/m""#),
     ],
     exclusive: &[],
 };
 
 static STRESSES_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of stresses",
-    doc: "value + per_metre (at_y - y) along the axes: linear everywhere, above at_y too, by the height at the start; in \
-          3-D the height is z",
+    doc: "Stresses along the axes that grow linearly with depth: value + per_metre (at_y - y), also above at_y. The \
+          height, in 3-D z, is that at the start.",
     keys: &[
-        key("value", Vector(In::Stress, Range::ANY), Required, "along the axes, at the height at_y"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; in 3-D z"),
-        key("per_metre", GradientVector(In::Stress), Required, "growth per metre of depth, along the axes"),
+        key("value", Vector(In::Stress, Range::ANY), Required, "Values at the height at_y, along the axes.")
+            .example(r#"["10 kPa", 0.0]"#),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "The height, in 3-D z.").example(r#""10 m""#),
+        key("per_metre", GradientVector(In::Stress), Required, "Growth per metre of depth, along the axes.")
+            .example(r#"["5 kPa/m", 0.0]"#),
     ],
     exclusive: &[],
 };
 
 pub(super) static ANGLE_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of an angle",
-    doc: "value + per_metre (at_y - y): linear everywhere, above at_y too; a point keeps what it has at the start; in \
-          3-D the height is z",
+    doc: "An angle that grows linearly with depth: value + per_metre (at_y - y), also above at_y. In 3-D the height \
+          is z. A material point keeps the value of its place at the start.",
     keys: &[
-        key("value", Quantity(In::Angle, Range::ANY), Required, "at the height at_y"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "the height; in 3-D z"),
-        key("per_metre", Gradient(In::Angle), Required, "growth per metre of depth"),
+        key("value", Quantity(In::Angle, Range::ANY), Required, "Value at the height at_y.").example("30.0"),
+        key("at_y", Quantity(In::Length, Range::ANY), Required, "The height, in 3-D z.").example(r#""10 m""#),
+        key("per_metre", Gradient(In::Angle), Required, "Growth per metre of depth.").example("0.5"),
     ],
     exclusive: &[],
 };

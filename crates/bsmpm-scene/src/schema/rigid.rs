@@ -1,4 +1,4 @@
-//! The table of rigid bodies.
+//! Schema of rigid bodies.
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
@@ -9,92 +9,167 @@ const ROTATION: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Angle, Range
 
 static GROUND: Table = Table {
     header: "terrain = { top }",
-    doc: "What lies under the posts of a regular raster of heights, bilinear between them and level beyond",
-    keys: &[key("top", body::HEIGHTS, Required, "rows [x, y, z] in any order; a file may also be an ASCII grid")],
+    doc: "Rigid ground below a regular raster of heights. The heights are interpolated bilinearly, and the ground is \
+          horizontal beyond the raster.",
+    keys: &[key("top", body::HEIGHTS, Required, "Rows [x, y, z] in any order. A file may also be an ESRI ASCII grid.")
+        .example(r#"{ file = "terrain.asc" }"#)],
     exclusive: &[],
 };
 
 pub(super) static RIGID: Table = Table {
     header: "[[rigid]]",
-    doc: "A rigid body in frictional contact with the soil, without tension, with a prescribed motion or moved by forces",
+    doc: "A rigid body in frictional contact with the soil, without tension. Its motion is prescribed or follows \
+          from forces.",
     keys: &[
-        key("name", Name, Required, "what histories call it"),
-        key("polygon", body::POLYGON, Optional, "its corners at the start, in either direction"),
-        key("circle", Kind::Table(&body::CIRCLE), Optional, "a circle instead"),
-        key("box", Kind::Table(&body::BOX), Optional, "in 3-D: a cuboid"),
-        key("sphere", Kind::Table(&body::SPHERE), Optional, "in 3-D: a sphere"),
-        key("revolve", Kind::Table(&body::REVOLVE), Optional, "in 3-D: a polygon about a vertical, e.g. a cone"),
-        key("terrain", Kind::Table(&GROUND), Optional, "in 3-D: what lies under a raster of heights"),
+        key("name", Name, Required, "Name by which stages and histories refer to it.").example(r#""pipe""#),
+        key("polygon", body::POLYGON, Optional, "Corners of a polygon at the start, clockwise or counter-clockwise.")
+            .example("[[0.0, 4.0], [1.0, 4.0], [0.5, 3.0]]"),
+        key("circle", Kind::Table(&body::CIRCLE), Optional, "A circle.")
+            .example(r#"{ centre = [2.0, 2.0], radius = "0.5 m" }"#),
+        key("box", Kind::Table(&body::BOX), Optional, "A cuboid, in 3-D.")
+            .example("{ lower = [0.0, 0.0, 4.0], upper = [1.0, 1.0, 5.0] }"),
+        key("sphere", Kind::Table(&body::SPHERE), Optional, "A sphere, in 3-D.")
+            .example(r#"{ centre = [0.0, 0.0, 4.0], radius = "0.5 m" }"#),
+        key(
+            "revolve",
+            Kind::Table(&body::REVOLVE),
+            Optional,
+            "A polygon that is rotated about a vertical axis, for instance a cone, in 3-D.",
+        )
+        .example("{ polygon = [[0.0, 3.0], [1.0, 5.0], [0.0, 5.0]], about = [0.0, 0.0] }"),
+        key("terrain", Kind::Table(&GROUND), Optional, "Rigid ground below a raster of heights, in 3-D.")
+            .example(r#"{ top = { file = "terrain.asc" } }"#),
         key(
             "friction_coefficient",
             Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
             Default("0.0"),
-            "tangent of the angle of friction between it and the soil; [strength_reduction] divides it, too",
+            "Friction coefficient, the tangent of the friction angle of the interface. [strength_reduction] divides \
+             it too.",
         )
+        .symbol("μ")
+        .example("0.3")
         .renamed_from(&["friction"]),
-        key("displacement", loads::DISPLACEMENT, Optional, "reached at the end, linear in time"),
-        key("velocity", loads::VELOCITY, Optional, "constant; quasi-static: m per unit of pseudo-time, numbers"),
+        key(
+            "displacement",
+            loads::DISPLACEMENT,
+            Optional,
+            "Displacement at the end of the run. It grows linearly with time.",
+        )
+        .symbol("u")
+        .example("[0.0, 0.1]"),
+        key(
+            "velocity",
+            loads::VELOCITY,
+            Optional,
+            "Constant velocity. In a quasi-static analysis it is a number: metres per unit of pseudo-time.",
+        )
+        .symbol("v")
+        .example("[0.0, 0.01]"),
         key(
             "path",
             loads::PATH,
             Optional,
-            "rows [t, ux, uy], t increasing; linear between, 0 at time 0, constant after the last",
-        ),
+            "Rows [t, ux, uy], in 3-D [t, ux, uy, uz], with t increasing. The displacement is interpolated linearly, \
+             starts from zero at time 0 and is constant after the last row.",
+        )
+        .example("[[0.0, 0.0, 0.0], [1.0, 0.0, 0.1]]"),
         key(
             "rotation",
             ROTATION,
             Optional,
-            "rows [t, angle], counter-clockwise; linear between, 0 at time 0, constant after the last",
-        ),
+            "Rows [t, angle], positive counter-clockwise. The angle is interpolated linearly, starts from zero at \
+             time 0 and is constant after the last row.",
+        )
+        .example("[[0.0, 0.0], [1.0, 10.0]]"),
         key(
             "about",
             Pair(In::Length, Range::ANY),
             Optional,
-            "its reference point at the start, about which it rotates and moments count; the centroid unless given",
-        ),
+            "Reference point at the start, about which the body rotates and moments are taken. Without this key it \
+             is the centroid.",
+        )
+        .example("[0.5, 4.0]"),
         key(
             "free",
             Names,
             Optional,
-            "motions that follow from forces: x, y, rotation; the others are on the way given. Faces of the grid hold material, \
-             and no rigid bodies: only soil and forces stop one. On a plane of symmetry give half of mass, inertia, forces",
-        ),
+            "Motions that follow from forces, any of \"x\", \"y\" and \"rotation\". The other motions are \
+             prescribed. Faces of the grid do not stop rigid bodies. For a body on a plane of symmetry give half of \
+             its mass, inertia and forces.",
+        )
+        .example(r#"["y"]"#),
         key(
             "mass",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "kg per metre of thickness, spread evenly over its area; axisymmetric: kg of the whole body",
-        ),
-        key("density", Quantity(In::Density, Range::POSITIVE), Optional, "instead of mass"),
+            "Mass in kg per metre of thickness, distributed evenly over the area. In axisymmetry it is the mass of \
+             the whole body in kg.",
+        )
+        .symbol("m")
+        .example("500.0"),
+        key("density", Quantity(In::Density, Range::POSITIVE), Optional, "Density, instead of mass.")
+            .symbol("ρ")
+            .example("2400.0"),
         key(
             "inertia",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "kg m2 per metre about its centroid; that of mass spread evenly unless given",
-        ),
+            "Moment of inertia about the centroid in kg m2 per metre. Without this key it is that of an evenly \
+             distributed mass.",
+        )
+        .symbol("I")
+        .example("40.0"),
         key(
             "force",
             Pair(In::LineForce, Range::ANY),
             Optional,
-            "on it, besides gravity, along x and y; axisymmetric: N on the whole body",
-        ),
+            "Force on the body in addition to gravity. In axisymmetry it is the force on the whole body in N.",
+        )
+        .example(r#"[0.0, "-10 kN/m"]"#),
         key(
             "force_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::LineForce, Range::ANY), (In::LineForce, Range::ANY)]),
             Optional,
-            "rows [t, x, y] of the force instead, t increasing; linear between, from 0 at time 0, constant after the last",
-        ),
-        key("moment", Quantity(In::Number, Range::ANY), Optional, "N m per metre on it, counter-clockwise"),
-        key("ramp", loads::RAMP, Default("0.0"), "time over which force and moment grow; 0: at once"),
+            "Rows [t, x, y] of the force, instead of force, with t increasing. The force is interpolated linearly. \
+             It is zero at time 0, unless a row gives another value, and constant after the last row.",
+        )
+        .example(r#"[[0.0, 0.0, 0.0], [1.0, 0.0, "-10 kN/m"]]"#),
+        key(
+            "moment",
+            Quantity(In::Number, Range::ANY),
+            Optional,
+            "Moment on the body in N m per metre, positive counter-clockwise.",
+        )
+        .example("100.0"),
+        key(
+            "ramp",
+            loads::RAMP,
+            Default("0.0"),
+            "Time over which force and moment grow to their full value. With 0 they act at once.",
+        )
+        .example("1.0"),
         key(
             "amplitude",
             loads::AMPLITUDE,
             Optional,
-            "instead of ramp: rows [t, share that acts], t increasing; linear between, from 0 at time 0, constant after the \
-             last",
-        ),
-        key("start_velocity", Pair(In::Velocity, Range::ANY), Optional, "at the start, of motions that are free"),
-        key("start_spin", Quantity(In::Number, Range::ANY), Optional, "rad/s at the start, if its rotation is free"),
+            "Rows [t, factor] of force and moment, instead of ramp, with t increasing. The factor is interpolated \
+             linearly. It is zero at time 0, unless a row gives another value, and constant after the last row.",
+        )
+        .example("[[0.0, 0.0], [1.0, 1.0]]"),
+        key(
+            "start_velocity",
+            Pair(In::Velocity, Range::ANY),
+            Optional,
+            "Velocity at the start, of the motions that are free.",
+        )
+        .example("[0.0, -1.0]"),
+        key(
+            "start_spin",
+            Quantity(In::Number, Range::ANY),
+            Optional,
+            "Angular velocity at the start in rad/s, if the rotation is free.",
+        )
+        .example("1.0"),
     ],
     exclusive: &[
         one_of(&["polygon", "circle", "box", "sphere", "revolve", "terrain"], true),

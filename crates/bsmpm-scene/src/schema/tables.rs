@@ -1,4 +1,4 @@
-//! The tables and keys of the language.
+//! Schema of the case file, its analysis, grid, boundaries and solver.
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required, Retired};
@@ -19,96 +19,174 @@ use std::ops::Bound::{Excluded, Included};
 /// The whole file.
 pub static ROOT: Table = Table {
     header: "the file",
-    doc: "One case: everything that a run needs",
+    doc: "One case: everything that a run needs.",
     keys: &[
-        key("title", Text(200), Optional, "what the case is, in a line"),
-        key("geometry", Choice(Geometry::WORDS), Required, "kind of the geometry"),
+        key("title", Text(200), Optional, "A short description of the case.")
+            .example(r#""Slope with a phreatic line""#),
+        key("geometry", Choice(Geometry::WORDS), Required, "Geometry of the analysis.").example(r#""plane-strain""#),
         key(
             "accuracy",
             Choice(Accuracy::WORDS),
             Optional,
-            "cells, points, steps, tolerances that are not given; not in 3-D, which gives them",
+            "Chooses the cells, material points, steps and tolerances that the case does not give. It is not \
+             available in 3-D.",
+        )
+        .example(r#""draft""#),
+        key("analysis", Kind::Table(&ANALYSIS), Required, "Type of the analysis and its duration."),
+        key("grid", Kind::Table(&GRID), Required, "The background grid."),
+        key("material", Named(&laws::MATERIAL), Required, "Materials, each with a name."),
+        key("body", Tables(&body::BODY), Required, "Bodies of soil, which are filled with material points."),
+        key("gravity", Kind::Table(&GRAVITY), Optional, "Body force. Without this table there is none."),
+        key("water", Kind::Table(&water::WATER), Optional, "Water in the ground. Without this table there is none."),
+        key("drain", Tables(&flow::DRAIN), Optional, "A surface through which water flows freely."),
+        key("inflow", Tables(&flow::INFLOW), Optional, "A surface through which water is put into the ground."),
+        key(
+            "shaking",
+            Kind::Table(&loads::SHAKING),
+            Optional,
+            "Acceleration of the ground. Without this table the ground does not shake.",
         ),
-        key("analysis", Kind::Table(&ANALYSIS), Required, "kind of the analysis and its time"),
-        key("grid", Kind::Table(&GRID), Required, "the parametric grid"),
-        key("material", Named(&laws::MATERIAL), Required, "materials by name"),
-        key("body", Tables(&body::BODY), Required, "bodies made of material points"),
-        key("gravity", Kind::Table(&GRAVITY), Optional, "body force; absent: none"),
-        key("water", Kind::Table(&water::WATER), Optional, "water in the ground; absent: none"),
-        key("drain", Tables(&flow::DRAIN), Optional, "a surface that lets water through"),
-        key("inflow", Tables(&flow::INFLOW), Optional, "a surface through which water is put in"),
-        key("shaking", Kind::Table(&loads::SHAKING), Optional, "motion of the ground; absent: none"),
-        key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "supports at the faces of the grid"),
-        key("stabilisation", Kind::Table(&STABILISATION), Optional, "against locking and oscillation; absent: none"),
-        key("solver", Kind::Table(&SOLVER), Default("{}"), "the non-linear iteration and the linear solver"),
-        key("output", Kind::Table(&output::OUTPUT), Optional, "frames for ParaView; absent: none"),
-        key("history", Tables(&output::HISTORY), Optional, "columns of history.csv"),
-        key("check", Tables(&output::CHECK), Optional, "bounds that are verified at the end"),
-        key("footing", Kind::Table(&loads::FOOTING), Optional, "a rigid strip that moves"),
-        key("prescribed", Tables(&loads::PRESCRIBED), Optional, "motion of a face or segment"),
-        key("rigid", Tables(&rigid::RIGID), Optional, "a rigid body in frictional contact with the soil"),
-        key("traction", Tables(&loads::TRACTION), Optional, "stress on the body's surface"),
-        key("point_load", Tables(&loads::POINT_LOAD), Optional, "a force at a point"),
-        key("strength_reduction", Kind::Table(&loads::REDUCTION), Optional, "strength divided by a factor"),
-        key("initial", Kind::Table(&loads::INITIAL), Optional, "stress at the start; absent: none"),
-        key("element", Named(&element::ELEMENT), Optional, "tests of one point, for `bsmpm element`"),
-        key("stage", Tables(&stage::STAGE), Optional, "what is removed, placed or exchanged at a time"),
-        key("profile", Tables(&output::PROFILE), Optional, "fields along a line"),
+        key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "Supports at the faces of the grid."),
+        key(
+            "stabilisation",
+            Kind::Table(&STABILISATION),
+            Optional,
+            "Method against volumetric locking and oscillating stresses. Without this table there is none.",
+        ),
+        key("solver", Kind::Table(&SOLVER), Default("{}"), "Nonlinear iteration and linear solver."),
+        key(
+            "output",
+            Kind::Table(&output::OUTPUT),
+            Optional,
+            "Frames for ParaView. Without this table none are written.",
+        ),
+        key("history", Tables(&output::HISTORY), Optional, "A column, or several, of history.csv."),
+        key("check", Tables(&output::CHECK), Optional, "A bound of a history column."),
+        key("footing", Kind::Table(&loads::FOOTING), Optional, "A rigid footing with a prescribed displacement."),
+        key(
+            "prescribed",
+            Tables(&loads::PRESCRIBED),
+            Optional,
+            "A prescribed displacement of a face of the grid or of a segment.",
+        ),
+        key("rigid", Tables(&rigid::RIGID), Optional, "A rigid body in frictional contact with the soil."),
+        key("traction", Tables(&loads::TRACTION), Optional, "A stress on the surface of a body."),
+        key("point_load", Tables(&loads::POINT_LOAD), Optional, "A force at a point."),
+        key(
+            "strength_reduction",
+            Kind::Table(&loads::REDUCTION),
+            Optional,
+            "Reduction of the strength of all materials.",
+        ),
+        key(
+            "initial",
+            Kind::Table(&loads::INITIAL),
+            Optional,
+            "Stress at the start. Without this table the bodies start without stress.",
+        ),
+        key(
+            "element",
+            Named(&element::ELEMENT),
+            Optional,
+            "Laboratory tests of one material point, which `bsmpm element` computes.",
+        ),
+        key(
+            "stage",
+            Tables(&stage::STAGE),
+            Optional,
+            "A change at a given time, for instance an excavation or a lift of fill.",
+        ),
+        key("profile", Tables(&output::PROFILE), Optional, "Fields along a line, written to a file."),
     ],
     exclusive: &[],
 };
 
 static ANALYSIS: Table = Table {
     header: "[analysis]",
-    doc: "Dynamic (Newmark 1/4, 1/2 unless damped), quasi-static (no inertia; time is a pseudo-time without unit), \
-          quasi-static-rate (no inertia; in s, for strengths by the rate), or consolidation (no inertia; water flows in \
-          real time)",
+    doc: "Type of the analysis. A dynamic analysis has inertia (Newmark's method with beta = 1/4 and gamma = 1/2, \
+          unless it is damped). A quasi-static analysis has none, and its time is a pseudo-time without unit. A \
+          quasi-static-rate analysis has no inertia either, but its time is real, for strengths that depend on the \
+          strain rate. A consolidation analysis has no inertia, and water flows in real time.",
     keys: &[
-        key("type", Choice(AnalysisType::WORDS), Required, "whether inertia acts, and what time is"),
-        key("end", Quantity(In::Time, Range::POSITIVE), Optional, "end of the run; quasi-static: 1.0 unless given"),
-        key("dt", Quantity(In::Time, Range::POSITIVE), Optional, "nominal step"),
-        key("steps", Count(1, 1_000_000_000), Optional, "number of equal steps, instead of dt"),
+        key("type", Choice(AnalysisType::WORDS), Required, "Whether inertia acts, and what the time means.")
+            .example(r#""dynamic""#),
+        key(
+            "end",
+            Quantity(In::Time, Range::POSITIVE),
+            Optional,
+            "End of the run. It is required, except in quasi-static analyses, which end at 1.0 without it.",
+        )
+        .example(r#""2 s""#),
+        key(
+            "dt",
+            Quantity(In::Time, Range::POSITIVE),
+            Optional,
+            "Nominal time step. Without `dt` and `steps`, `accuracy` or `purpose` chooses the steps.",
+        )
+        .symbol("Δt")
+        .example(r#""1 ms""#),
+        key("steps", Count(1, 1_000_000_000), Optional, "Number of equal steps, instead of dt.").example("40"),
         key(
             "growth",
             Quantity(In::Number, GROWTH),
             Optional,
-            "a step over the one before it (consolidation), from dt on at the start and after every stage; 1 unless given",
-        ),
+            "Ratio of a step to the one before it, in consolidation. The steps grow from dt at the start and after \
+             every stage. Without this key they do not grow.",
+        )
+        .example("1.2"),
         key(
             "dt_max",
             Quantity(In::Time, Range::POSITIVE),
             Optional,
-            "the longest step to which they grow; no bound unless given",
-        ),
+            "Largest step that growth may reach. Without this key there is no bound, and without `growth` it has no \
+             effect.",
+        )
+        .example(r#""10 d""#),
         key(
             "spectral_radius",
             Quantity(In::Number, UP_TO_1),
             Optional,
-            "numerical damping of second order (WBZ-alpha): what is left at infinite frequency; 1 unless given: none",
-        ),
+            "Spectral radius at infinite frequency of the time integration (WBZ-alpha, second-order accurate). \
+             Smaller values damp high frequencies more. Without this key it is 1, which is no damping.",
+        )
+        .symbol("ρ∞")
+        .example("0.8"),
         key(
             "mass",
             Choice(MassMatrix::WORDS),
             Optional,
-            "mass matrix of the nodes; consistent unless given, where nothing is in contact and either the ground shakes or all \
-             materials are elastic; otherwise lumped",
-        ),
+            "Mass matrix of the nodes. Without this key it is consistent if nothing is in contact and, in addition, \
+             the ground shakes or all materials are elastic. Otherwise it is lumped.",
+        )
+        .example(r#""consistent""#),
         key(
             "wall_velocity",
             Choice(WallVelocity::WORDS),
             Optional,
-            "velocity that material points within a cell of a fixed face keep; own unless given, but relaxed for mu-i \
-             material with lumped mass",
-        ),
+            "Velocity of the material points within a cell of a fixed face. Without this key it is \"own\", or \
+             \"relaxed\" for mu-i material with lumped mass.",
+        )
+        .example(r#""relaxed""#),
         key(
             "purpose",
             Choice(Purpose::WORDS),
             Optional,
-            "\"limit-load\" (quasi-static, under prescribed motion): chooses points, order, method, steps and tolerances that are \
-             not given, and a raised stiffness, so that the geometry stays as drawn",
-        ),
-        key("newmark_gamma", Quantity(In::Number, GAMMA), Optional, "Newmark's gamma instead: damping of first order")
-            .renamed_from(&["gamma"]),
+            "Purpose of the analysis. \"limit-load\" is for a quasi-static analysis under a prescribed displacement. \
+             It chooses the material points, degree, method, steps and tolerances that the case does not give. It \
+             multiplies the stiffness and divides the prescribed displacements by one factor, so that the geometry \
+             stays as drawn.",
+        )
+        .example(r#""limit-load""#),
+        key(
+            "newmark_gamma",
+            Quantity(In::Number, GAMMA),
+            Optional,
+            "Newmark's gamma, instead of spectral_radius. Values above 0.5 damp high frequencies and reduce the \
+             accuracy to first order.",
+        )
+        .symbol("γ")
+        .example("0.6")
+        .renamed_from(&["gamma"]),
     ],
     exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "newmark_gamma"], false)],
 };
@@ -119,127 +197,202 @@ const GAMMA: Range =
 
 static GRID: Table = Table {
     header: "[grid]",
-    doc: "The background grid: open knot vectors, one patch per cell",
+    doc: "The background grid. It has open knot vectors and one knot span per cell.",
     keys: &[
-        key("lower", Vector(In::Length, Range::ANY), Optional, "lower corner; cells start here"),
-        key("upper", Vector(In::Length, Range::ANY), Optional, "upper corner; a free face moves out to a whole cell"),
-        key("cell", Either(In::Length, Range::POSITIVE), Optional, "edge of the cells, or one along each axis"),
-        key("knots", Kind::Table(&KNOTS), Optional, "explicit breakpoints instead of cell"),
-        key("degree", Choice(Order::WORDS), Default("\"quadratic\""), "order of the B-splines")
+        key(
+            "lower",
+            Vector(In::Length, Range::ANY),
+            Optional,
+            "Lower corner, where the first cell begins. Required with `cell`.",
+        )
+        .example("[0.0, 0.0]"),
+        key(
+            "upper",
+            Vector(In::Length, Range::ANY),
+            Optional,
+            "Upper corner. Required with `cell`. If the length is not a whole number of cells, a free face is moved \
+             outwards.",
+        )
+        .example("[40.0, 12.0]"),
+        key(
+            "cell",
+            Either(In::Length, Range::POSITIVE),
+            Optional,
+            "Edge length of the cells, or one length along each axis. Without `cell` and `knots`, `accuracy` chooses \
+             the cells.",
+        )
+        .symbol("h")
+        .example(r#""0.5 m""#),
+        key("knots", Kind::Table(&KNOTS), Optional, "Grid lines, instead of cells of one size."),
+        key("degree", Choice(Order::WORDS), Default("\"quadratic\""), "Degree of the B-splines.")
+            .symbol("q")
+            .example(r#""quadratic""#)
             .renamed_from(&["order"]),
         key(
             "c0_lines",
             Choice(C0Lines::WORDS),
             Default("\"automatic\""),
-            "grid lines across which strains may jump: where bodies of unlike stiffness or density meet, and at the ends of \
-             strips and loaded segments; none: only breakpoints that knots repeats",
-        ),
+            "Grid lines at which strains may jump. \"automatic\" puts them where bodies with different stiffness or \
+             density meet, at the ends of footings and loaded segments, and at corners of rigid bodies. \"none\" \
+             leaves only the lines that knots repeats.",
+        )
+        .example(r#""automatic""#),
     ],
     exclusive: &[one_of(&["cell", "knots"], true)],
 };
 
 static KNOTS: Table = Table {
     header: "[grid.knots]",
-    doc: "Breakpoints between the cells, increasing; one that stands m times has order - m continuous derivatives",
+    doc: "Coordinates of the grid lines, in increasing order. At a line that is listed m times, at most q, the \
+          B-splines of degree q have q - m continuous derivatives.",
     keys: &[
-        key("x", List(In::Length, Range::ANY), Required, "breakpoints along x"),
-        key("y", List(In::Length, Range::ANY), Required, "breakpoints along y"),
-        key("z", List(In::Length, Range::ANY), Optional, "in 3-D: breakpoints along z"),
+        key("x", List(In::Length, Range::ANY), Required, "Grid lines along x.").example("[0.0, 1.0, 2.0, 4.0]"),
+        key("y", List(In::Length, Range::ANY), Required, "Grid lines along y.").example("[0.0, 0.5, 1.0]"),
+        key("z", List(In::Length, Range::ANY), Optional, "Grid lines along z, in 3-D.").example("[0.0, 0.5, 1.0]"),
     ],
     exclusive: &[],
 };
 
 static GRAVITY: Table = Table {
     header: "[gravity]",
-    doc: "Body force per mass",
+    doc: "Gravity, a force per mass.",
     keys: &[
         key(
             "acceleration",
             Vector(In::Acceleration, Range::ANY),
             Required,
-            "when fully applied. A horizontal part in a quasi-static analysis is the inertia of a pseudo-static one: the \
-             seismic coefficient times 9.81. Pore pressures and the stress of [initial] are those of the vertical part",
-        ),
+            "Acceleration of gravity at its full value. In a quasi-static analysis a horizontal component is a \
+             pseudo-static earthquake load: the seismic coefficient times 9.81 m/s2. Pore pressures and the stress of \
+             [initial] follow from the vertical component alone.",
+        )
+        .symbol("g")
+        .example("[0.0, -9.81]"),
         key(
             "ramp",
             Quantity(In::Time, Range::NOT_NEGATIVE),
             Default("0.0"),
-            "time over which it grows; 0: at once. With [initial] the horizontal part alone grows, as the vertical part \
-             acts from the start",
-        ),
+            "Time over which gravity grows to its full value. With 0 it acts at once. With [initial] only the \
+             horizontal component grows, as the vertical one acts from the start.",
+        )
+        .example("1.0"),
     ],
     exclusive: &[],
 };
 
 static BOUNDARY: Table = Table {
     header: "[boundary]",
-    doc: "Supports at the faces of the grid: fixed, roller, contact, absorbing, free field, outflow, or free",
+    doc: "Supports at the faces of the grid.",
     keys: &[
-        key("left", loads::SUPPORT, Default("\"free\""), "face at the lowest x"),
-        key("right", loads::SUPPORT, Default("\"free\""), "face at the highest x"),
-        key("bottom", loads::SUPPORT, Default("\"free\""), "face at the lowest y, in 3-D z"),
-        key("top", loads::SUPPORT, Default("\"free\""), "face at the highest y, in 3-D z"),
-        key("front", loads::SUPPORT, Optional, "in 3-D: face at the lowest y; free unless given"),
-        key("back", loads::SUPPORT, Optional, "in 3-D: face at the highest y; free unless given"),
+        key("left", loads::SUPPORT, Default("\"free\""), "Support at the face with the lowest x.")
+            .example(r#""roller""#),
+        key("right", loads::SUPPORT, Default("\"free\""), "Support at the face with the highest x.")
+            .example(r#""roller""#),
+        key("bottom", loads::SUPPORT, Default("\"free\""), "Support at the face with the lowest y, in 3-D z.")
+            .example(r#""fixed""#),
+        key("top", loads::SUPPORT, Default("\"free\""), "Support at the face with the highest y, in 3-D z.")
+            .example(r#""free""#),
+        key(
+            "front",
+            loads::SUPPORT,
+            Optional,
+            "Support at the face with the lowest y, in 3-D. Without this key it is free.",
+        )
+        .example(r#""roller""#),
+        key(
+            "back",
+            loads::SUPPORT,
+            Optional,
+            "Support at the face with the highest y, in 3-D. Without this key it is free.",
+        )
+        .example(r#""roller""#),
     ],
     exclusive: &[],
 };
 
 static STABILISATION: Table = Table {
     header: "[stabilisation]",
-    doc: "Section 2.3 of the paper",
-    keys: &[key("method", Choice(Stabilisation::WORDS), Required, "what is averaged over the grid")],
+    doc: "Method against volumetric locking and oscillating stresses. The theory manual compares the methods.",
+    keys: &[key("method", Choice(Stabilisation::WORDS), Required, "Which volume changes are averaged over the grid.")
+        .example(r#""consistent-f-bar""#)],
     exclusive: &[],
 };
 
 static SOLVER: Table = Table {
     header: "[solver]",
-    doc: "The non-linear iteration",
+    doc: "Nonlinear iteration and linear solver.",
     keys: &[
         key(
             "nonlinear",
             Choice(Nonlinear::WORDS),
             Default("\"auto\""),
-            "auto: all recent secants, newton where they stall (with water that flows: do not converge); broyden: the \
-             paper's update; newton: the complete tangent",
-        ),
-        key("tolerance", Quantity(In::Number, FRACTION), Default("1e-8"), "energy measure"),
-        key("force_tolerance", Quantity(In::Number, FRACTION), Default("1e-4"), "force measure; both must hold"),
-        key("max_iterations", Count(1, 100_000), Default("200"), "iterations of one attempt"),
+            "Method of the nonlinear iteration. \"auto\" is a quasi-Newton method with multiple secants, and \
+             Newton's method if that stalls or, with flowing water, does not converge. \"broyden\" is the paper's \
+             rank-one update. \"newton\" uses the consistent tangent.",
+        )
+        .example(r#""newton""#),
+        key(
+            "tolerance",
+            Quantity(In::Number, FRACTION),
+            Default("1e-8"),
+            "Tolerance of the energy measure of convergence.",
+        )
+        .example("1e-8"),
+        key(
+            "force_tolerance",
+            Quantity(In::Number, FRACTION),
+            Default("1e-4"),
+            "Tolerance of the force measure of convergence. A step must meet both.",
+        )
+        .example("1e-4"),
+        key(
+            "max_iterations",
+            Count(1, 100_000),
+            Default("200"),
+            "Largest number of iterations in one attempt of a step.",
+        )
+        .example("200"),
         key(
             "quadrature",
             Choice(Quadrature::WORDS),
             Optional,
-            "what points weigh in integrals of the stress: their volumes, or (quasi-static, not cubic) volumes with which \
-             splines inside bodies are integrated exactly; fitted where unlike materials meet on a C0 line and no water flows, \
-             else points",
-        ),
+            "Integration weights of the material points: their volumes, or volumes that integrate the splines inside \
+             bodies exactly (quasi-static, not with cubic splines). Without this key they are fitted if different \
+             materials meet at a C0 line and no water flows.",
+        )
+        .example(r#""fitted""#),
         key(
             "extension",
             Choice(ExtendedSplines::WORDS),
             Optional,
-            "extended B-splines at the edge of bodies; linear unless dynamic or cubic, which are off",
-        ),
+            "Extended B-splines in nearly empty cells at the surface of bodies. Without this key it is \"linear\", \
+             but \"off\" in dynamic analyses and with cubic splines.",
+        )
+        .example(r#""linear""#),
         key(
             "background",
             Quantity(In::Number, UP_TO_1),
             Optional,
-            "soft elastic background in occupied cells, part of the largest young in a cell; quasi-static 1e-4, dynamic 0; \
-             above 1e-4 ground under dead load is too strong",
-        ),
+            "Artificial elastic stiffness of occupied cells, as a part of the largest Young's modulus in the cell. \
+             Without this key it is 1e-4 in quasi-static and 0 in dynamic analyses. Values above 1e-4 make ground \
+             under permanent loads too strong.",
+        )
+        .example("1e-4"),
         key("background_kind", Choice(BACKGROUND_KIND), Retired, "the background always resists strain"),
         key("background_cells", Choice(BACKGROUND_CELLS), Retired, "all occupied cells always have the background"),
         key(
             "linear",
             ChoiceOr(LinearSolver::WORDS, &LINEAR),
             Default("{}"),
-            "the linear solver, in a word or by PETSc's names; by size unless given; options after -- go before it",
-        ),
+            "The linear solver, by a word or by PETSc's names. Without this key the number of unknowns decides. \
+             PETSc options after `--` on the command line take precedence.",
+        )
+        .example(r#""direct""#),
         key(
             "reproducible",
             Flag,
             Default("true"),
-            "the same bits in every run on as many ranks; PETSc's direct solvers then factorise the whole system on each",
+            "Whether every run on the same number of ranks gives the same result to the last bit. PETSc's direct \
+             solvers then factorise the whole system on each rank.",
         ),
     ],
     exclusive: &[],
@@ -250,21 +403,31 @@ const UP_TO_1: Range = Range::of(Included(0.0), Included(1.0));
 
 static LINEAR: Table = Table {
     header: "linear = { ksp, pc, factor }",
-    doc: "The linear solver, by PETSc's own names",
+    doc: "The linear solver by PETSc's names.",
     keys: &[
-        key("ksp", Choice(Option::<Ksp>::WORDS), Optional, "method; auto, unless given: what the preconditioner needs"),
+        key(
+            "ksp",
+            Choice(Option::<Ksp>::WORDS),
+            Optional,
+            "Iterative method. Without this key, or with \"auto\", it is the one that the preconditioner needs.",
+        )
+        .example(r#""cg""#),
         key(
             "pc",
             Choice(Option::<Pc>::WORDS),
             Optional,
-            "preconditioner or direct solver; auto, unless given: cholesky, or gamg of very many unknowns",
-        ),
+            "Preconditioner or direct solver. Without this key, or with \"auto\", it is \"cholesky\", or \"gamg\" \
+             for very many unknowns.",
+        )
+        .example(r#""gamg""#),
         key(
             "factor",
             Choice(Factor::WORDS),
             Optional,
-            "package of a direct solver; dissection (cholesky) or mumps unless given",
-        ),
+            "Package of a direct solver. Without this key it is \"dissection\" for \"cholesky\" and \"mumps\" for \
+             other solvers.",
+        )
+        .example(r#""mumps""#),
     ],
     exclusive: &[],
 };

@@ -1,4 +1,4 @@
-//! How words are defined: for an enum of another crate, or together with the enum.
+//! Macros that define an enum with its accepted words.
 
 /// The words of an enum: `Variant = "word": "what it means",` those that are not available `later`, and `misnomers`
 /// with what is meant by them, and `earlier` words with those of now.

@@ -1,130 +1,128 @@
-//! What a history records: its words, definitions, units and columns.
+//! Accepted words for history quantities, with units and columns.
 
 choice! {
     /// What a history records, without what it needs besides, which [`Quantity`](crate::Quantity) has.
     pub enum Measurement {
-        /// The x that `percentile` per cent of the points do not exceed; 100: of the farthest point. In the grid's
-        /// coordinates: the initial length is not taken off. For the run-out of a flow use `percentile = 99`: single
-        /// points and a tip thinner than a cell run ahead.
+        /// The coordinate x that `percentile` per cent of the material points do not exceed. It is a coordinate: the
+        /// initial length of the body is not subtracted. For the run-out of a flow use `percentile = 99`, because
+        /// single material points and a thin tip run ahead.
         Runout = "runout",
-        /// The farthest x of the lowest occupied row of cells such that the points from it back by the length of its
-        /// cell fill half of a cell; a few loose points run ahead of it. It does not converge where the tip is thinner
-        /// on finer grids: for run-outs use `runout` with `percentile = 99`.
+        /// Position of the front: the largest x of the lowest occupied row of cells at which the material points fill
+        /// half of a cell. On finer grids it does not converge if the tip is thin. For a run-out use `runout` with
+        /// `percentile = 99`.
         Front = "front",
-        /// The largest y of any point, or of those within half a cell of `at_x`; 0 where there are none.
+        /// The largest y of all material points, or of those within half a cell of `at_x`. It is 0 if there are none.
         Height = "height",
-        /// The largest displacement of any point.
+        /// The largest displacement of all material points.
         MaxDisplacement = "max-displacement",
-        /// Mass, per metre of thickness.
+        /// Mass.
         Mass = "mass",
-        /// Momentum (kg m/s), per metre of thickness.
+        /// Momentum.
         Momentum = "momentum",
-        /// Where the mass is in the mean; the grid's lower corner without any.
+        /// Centre of mass. Without material it is the lower corner of the grid.
         CentreOfMass = "centre-of-mass",
-        /// Angular momentum about the origin of the case's coordinates (kg m2/s), counter-clockwise, per metre of
-        /// thickness.
+        /// Angular momentum about the origin, positive counter-clockwise.
         AngularMomentum = "angular-momentum",
-        /// Kinetic energy, per metre of thickness.
+        /// Kinetic energy.
         KineticEnergy = "kinetic-energy",
-        /// Mean Cauchy stress, positive in tension, weighted with the points' present volumes.
+        /// Mean Cauchy stress, positive in tension, weighted with the present volumes of the material points.
         MeanStress = "mean-stress",
-        /// Mean displacement, weighted with the points' present volumes.
+        /// Mean displacement, weighted with the present volumes of the material points.
         MeanDisplacement = "mean-displacement",
-        /// Mean velocity, weighted with the points' present volumes.
+        /// Mean velocity, weighted with the present volumes of the material points.
         MeanVelocity = "mean-velocity",
-        /// Accumulated plastic strain, the sum of sqrt(2/3) |dev| of its increments.
+        /// Accumulated plastic strain, the sum of sqrt(2/3) times the norm of the deviatoric plastic strain increments.
         PlasticStrain = "plastic-strain",
-        /// What the stress transmits across the line from `from` to `to`, per metre of thickness: of the material on
-        /// its right on that on its left: the effective stress, without what water presses with. What of the line is
-        /// out of the body counts for nothing. Of a solid across a
-        /// `rectangle` or a `disc`, of the material that its normal axis points to on that before; t1 and t2 are the
-        /// axes that follow the normal one (y and z of x, z and x of y, x and y of z), and turn with the section.
+        /// Forces of the effective stress across the line from `from` to `to`, which the material on the right of the
+        /// line exerts on that on its left. Parts of the line outside the body do not count. In 3-D the section is a
+        /// `rectangle` or a `disc`, and the material on the side of the positive normal axis acts on that on the other
+        /// side. The axes t1 and t2 follow the normal axis in the cyclic order x, y, z, and rotate with the section.
         SectionForces = "section-forces",
-        /// Mass that has left the grid through faces with outflow since the start, per metre of thickness.
+        /// Mass that has left the grid through faces with outflow since the start.
         Outflow = "outflow",
-        /// Force of a face's supports, or of a strip or what else moves, on the body, per metre of thickness. At
-        /// an edge that two faces hold, a force counts for the face that it is normal to; where a strip or what moves
-        /// meets a face that is fixed, what the nodes of the edge hold counts for that face (a fixed bottom has 4 % of
-        /// the thrust on a wall of 16 cells, of 8 cells 8 %; a roller has none). In water it is that of the grains and
-        /// of the excess pressure, without what still water presses with.
+        /// Force that the support at a face, a footing or a prescribed displacement exerts on the body. A node at the
+        /// edge of two supported faces counts for the face that its force is normal to. Where a footing or prescribed
+        /// displacement meets a fixed face, the nodes of the edge count for the face. In water it is the force of the
+        /// effective stress and of the excess pore pressure.
         Reaction = "reaction",
-        /// Moment of the force of a strip or what else moves about its middle, counter-clockwise, per metre of
-        /// thickness.
+        /// Moment of the reaction force of a footing or prescribed displacement about its centre, positive counter-
+        /// clockwise.
         Moment = "moment",
-        /// Work of a strip or what else moves on the body since the start, per metre of thickness: by the mean force of
-        /// every step.
+        /// Work of a footing or prescribed displacement on the body since the start, from the mean force of every step.
         Work = "work",
-        /// Displacement of the material that is at `at` at the start, by the motion about the point nearest to it.
+        /// Displacement of the material that is at `at` at the start, extrapolated from the nearest material point.
         Displacement = "displacement",
-        /// Velocity of the point nearest to `at` at the start; with `surface` of the place itself.
+        /// Velocity of the material point that is nearest to `at` at the start, or with `surface` of the place itself.
         Velocity = "velocity",
-        /// Cauchy stress of the point nearest to `at` at the start, positive in tension; with `surface` of the place
-        /// itself.
+        /// Cauchy stress of the material point that is nearest to `at` at the start, positive in tension, or with
+        /// `surface` of the place itself.
         Stress = "stress",
-        /// Pressure of the water in the pores of the point nearest to `at` at the start, positive in compression.
+        /// Pore pressure at the material point that is nearest to `at` at the start, positive in compression.
         PorePressure = "pore-pressure",
-        /// Pore pressure of all points, or of those of a material or body, positive in compression.
+        /// Pore pressure of all material points, or of those of a material or body, positive in compression.
         PorePressures = "pore-pressures",
-        /// Pore pressure above that of the still water, of the point nearest to `at` at the start, where water flows.
+        /// Pore pressure minus hydrostatic pressure at the material point that is nearest to `at` at the start, where
+        /// water flows.
         ExcessPressure = "excess-pressure",
-        /// Share of pores in the volume of the point nearest to `at` at the start, where water flows.
+        /// Porosity at the material point that is nearest to `at` at the start, where water flows.
         Porosity = "porosity",
-        /// Volume of water that flows through the soil per area and time (Darcy), relative to the grains, of the point
-        /// nearest to `at` at the start. In cells at the surface of ground that has deformed much it jumps from cell
-        /// to cell, by a third and more: what drains let through does not.
+        /// Darcy velocity (volume of water per area and time, relative to the soil) at the material point that is
+        /// nearest to `at` at the start. At the surface of strongly deformed ground it can differ by a third and more
+        /// from cell to cell. The outflow through drains has no such error.
         Flux = "flux",
-        /// Volume of water that has left the ground through a drain since the start, per metre of thickness; all drains
-        /// less all inflows unless one is named.
+        /// Volume of water that has left the ground through a drain since the start. Without the name of a drain it is
+        /// the sum of all drains less all inflows.
         WaterOutflow = "water-outflow",
-        /// What the ground has gained of water since the start and what has left it: their sum over the larger of what
-        /// crossed its surface and what its points took in and gave off. 0 where no water is lost.
+        /// Relative error of the water balance: the sum of what the ground has gained and what has left it since the
+        /// start, divided by the larger of the two flows. It is 0 if no water is lost.
         WaterBalance = "water-balance",
-        /// Oscillation of sigma_yy over all points from point to point: a root mean square, over the mean of
+        /// Oscillation of the vertical stress between neighbouring material points: root mean square over the mean of
         /// |sigma_yy|.
         StressNoise = "stress-noise",
-        /// Oscillation of the pressure from point to point: a root mean square over the points.
+        /// Oscillation of the pressure between neighbouring material points: root mean square over the material points.
         PressureNoise = "pressure-noise",
-        /// The largest upward displacement of any point.
+        /// The largest upward displacement of all material points.
         Heave = "heave",
-        /// Mean normal pressure on the footing's base.
+        /// Mean normal pressure at the base of the footing.
         FootingPressure = "footing-pressure",
-        /// Force of the soil on the footing against its motion, per metre of thickness.
+        /// Force of the soil on the footing, positive against the motion of the footing.
         FootingForce = "footing-force",
-        /// Displacement of the footing, downwards.
+        /// Downward displacement of the footing.
         Penetration = "penetration",
-        /// The largest distance that the material has slipped from the footing in the step, over the footing's
-        /// motion in it.
+        /// The largest distance that the material has slipped from the footing in the step, divided by the displacement
+        /// of the footing in it.
         Slip = "slip",
-        /// Of a face in contact, the part of its nodes near material that is on it, and the part of its normal force
-        /// where material slides.
+        /// State of a face, footing or segment in contact: the part of its nodes near material that are closed, and the
+        /// part of its normal force where material slides.
         Contact = "contact",
-        /// The least and the largest distance of the material from a face in contact, over the nodes of the face whose
-        /// cells have some; 0 without any, and before the first step.
+        /// The least and the largest distance of the material from a face, footing or segment in contact, over its
+        /// nodes with material in their cells. It is 0 without such nodes, and before the first step.
         Gap = "gap",
-        /// How fast material slides along a face in contact: the step's mean, weighted with the normal force.
+        /// Sliding velocity of the material along a face, footing or segment in contact: mean over the step, weighted
+        /// with the normal force.
         SlipRate = "slip-rate",
-        /// What friction at a face in contact dissipates, per unit of time and metre of thickness: the step's mean.
+        /// Power that friction at a face, footing or segment in contact dissipates: mean over the step.
         FrictionPower = "friction-power",
-        /// Force of the soil on a rigid body, per metre of thickness.
+        /// Force of the soil on a rigid body.
         RigidForce = "rigid-force",
-        /// Moment of that force about the body's reference point (N m), counter-clockwise, per metre of thickness.
+        /// Moment of that force about the reference point of the body, positive counter-clockwise.
         RigidMoment = "rigid-moment",
-        /// Displacement of a rigid body's reference point.
+        /// Displacement of the reference point of a rigid body.
         RigidDisplacement = "rigid-displacement",
-        /// Rotation of a rigid body, counter-clockwise.
+        /// Rotation of a rigid body, positive counter-clockwise.
         RigidRotation = "rigid-rotation",
-        /// Velocity of a rigid body's reference point.
+        /// Velocity of the reference point of a rigid body.
         RigidVelocity = "rigid-velocity",
-        /// Way that soil has gone along a rigid body's outline where it touches it: the sum of every step's mean,
+        /// Sliding distance of the soil along the outline of a rigid body: the sum over the steps of the mean slip,
         /// weighted with the normal force.
         RigidSlip = "rigid-slip",
-        /// The least distance of soil from a rigid body; 0 where it is touched, and before the first step.
+        /// The least distance of the soil from a rigid body. It is 0 if they touch, and before the first step.
         RigidGap = "rigid-gap",
-        /// Work of a rigid body on the soil since the start, friction among it, per metre of thickness: by the mean
-        /// force of every step, in dynamics by that at its end.
+        /// Work of a rigid body on the soil since the start, including friction. It follows from the mean force of
+        /// every step, in dynamic analyses from the force at its end.
         RigidWork = "rigid-work",
-        /// Where the energy of the points is, and where it went since the start, per metre of thickness: external =
-        /// change of kinetic + change of elastic + plastic + numerical + closure.
+        /// Energy balance since the start: external = change of kinetic + change of elastic + plastic + numerical +
+        /// closure.
         Energy = "energy",
     }
 }
@@ -138,37 +136,42 @@ const STRESS_IN_SPACE: &[(&str, &str)] =
     &[STRESS[0], STRESS[1], ("-zz", "normal to z"), ("-xy", "shear"), ("-yz", "shear"), ("-xz", "shear")];
 const SECTION: &[(&str, &str)] = &[
     ("-n", "normal force, positive in tension"),
-    ("-q", "shear force: on what is on the left of the line, along it"),
-    ("-m", "moment about the line's middle (N m/m), positive where the side of `to` is in tension"),
+    ("-q", "shear force along the line, on the material on its left"),
+    ("-m", "bending moment about the centre of the line (N m/m), positive if the side of `to` is in tension"),
 ];
 const SECTION_IN_SPACE: &[(&str, &str)] = &[
     SECTION[0],
-    ("-q1", "shear force: on what is before the section, along t1"),
-    ("-q2", "shear force: on what is before the section, along t2"),
-    ("-t", "torsion (N m): moment about the normal through the section's middle, on what is before it"),
-    ("-m1", "moment about the section's middle (N m), positive where the side that t1 points to is in tension"),
-    ("-m2", "moment about the section's middle (N m), positive where the side that t2 points to is in tension"),
+    ("-q1", "shear force along t1, on the material before the section"),
+    ("-q2", "shear force along t2, on the material before the section"),
+    ("-t", "torsion (N m) about the normal through the centre of the section, on the material before it"),
+    ("-m1", "bending moment about the centre (N m), positive if the side of positive t1 is in tension"),
+    ("-m2", "bending moment about the centre (N m), positive if the side of positive t2 is in tension"),
 ];
 const RANGE: &[(&str, &str)] =
-    &[("-mean", "their mean, weighted with present volumes"), ("-least", "the least"), ("-largest", "the largest")];
-const STRAIN: &[(&str, &str)] =
-    &[("-mean", "the mean, weighted with present volumes"), ("-largest", "of the point that has most")];
-const NOISE: &[(&str, &str)] =
-    &[("-average", "about the average over the grid"), ("-plane", "about the plane through the points around")];
-const CONTACT: &[(&str, &str)] = &[("-closed", "part of the nodes"), ("-sliding", "part of the normal force")];
-const GAP: &[(&str, &str)] = &[("-least", "the least"), ("-largest", "the largest")];
+    &[("-mean", "mean, weighted with the present volumes"), ("-least", "least value"), ("-largest", "largest value")];
+const STRAIN: &[(&str, &str)] = &[("-mean", "mean, weighted with the present volumes"), ("-largest", "largest value")];
+const NOISE: &[(&str, &str)] = &[
+    ("-average", "deviation from the average over the grid"),
+    ("-plane", "deviation from a plane through the neighbouring material points"),
+];
+const CONTACT: &[(&str, &str)] =
+    &[("-closed", "part of the nodes that are closed"), ("-sliding", "part of the normal force that slides")];
+const GAP: &[(&str, &str)] = &[("-least", "least value"), ("-largest", "largest value")];
 const ENERGY: &[(&str, &str)] = &[
-    ("-kinetic", "kinetic energy of the points"),
-    ("-elastic", "elastic energy of the points, and what compressed water and pores that suction has emptied hold"),
-    ("-plastic", "dissipated by plastic flow, damping and seepage"),
-    ("-external", "work of gravity, loads and what moves, less what friction at faces and faces that absorb take"),
-    ("-numerical", "loss of the algorithm: the sum of the next five"),
-    ("-transfer", "lost between points and nodes"),
-    ("-integration", "lost by integration in time and along the strain"),
-    ("-smoothing", "lost by the smoothing of the elastic strain"),
-    ("-background", "lost to the soft background"),
-    ("-penalty", "lost between strips and material"),
-    ("-closure", "what is left over: the work of what is out of balance, and round-off"),
+    ("-kinetic", "kinetic energy of the material points"),
+    ("-elastic", "elastic energy of the material points, of compressed water and of suction"),
+    ("-plastic", "dissipation by plastic flow, damping and seepage"),
+    (
+        "-external",
+        "work of gravity, loads and prescribed displacements, minus the dissipation of friction at faces and of absorbing boundaries",
+    ),
+    ("-numerical", "numerical dissipation: the sum of the next five columns"),
+    ("-transfer", "dissipation of the transfer between material points and nodes"),
+    ("-integration", "dissipation of the integration in time and along the strain path"),
+    ("-smoothing", "dissipation of the averaging of the elastic strain"),
+    ("-background", "dissipation of the artificial stiffness"),
+    ("-penalty", "dissipation of the penalty of footings and prescribed displacements"),
+    ("-closure", "residual of the balance: work of the out-of-balance forces, and round-off"),
 ];
 
 impl Measurement {

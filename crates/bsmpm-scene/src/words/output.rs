@@ -1,26 +1,26 @@
-//! Words of what frames and profiles show of the points.
+//! Accepted words for fields of frames and profiles.
 
 choice! {
     /// An indicator that ends a run with an exit code of its own where it is beyond its limit, unless the case accepts
     /// it.
     pub enum LimitedIndicator {
-        /// Work done on the soft background.
+        /// Work of the artificial stiffness.
         BackgroundWork = "background-work",
-        /// Energy that the algorithm lost.
+        /// Energy that the numerical method dissipates.
         EnergyLoss = "energy-loss",
-        /// Noise of a history of a force.
+        /// Noise in the history of a force.
         ForceNoise = "force-noise",
-        /// Distance by which an interface has left its grid line.
+        /// Distance of a material interface from its grid line.
         InterfaceShift = "interface-shift",
-        /// The same for soils of different permeability.
+        /// The same for an interface between soils of different permeability.
         PermeabilityShift = "permeability-shift",
-        /// Depth of material in a rigid body.
+        /// Penetration of material into a rigid body.
         RigidPenetration = "rigid-penetration",
-        /// Distance that a point moved in a step of dynamics.
+        /// Distance that a material point moves in one dynamic step.
         StepAdvance = "step-advance",
-        /// Velocity of points next to fixed faces.
+        /// Spurious velocity of material points next to fixed faces.
         WallVelocity = "wall-velocity",
-        /// Water that was lost.
+        /// Error of the water balance.
         WaterBalance = "water-balance",
     }
 }
@@ -28,32 +28,32 @@ choice! {
 choice! {
     /// A field that frames have on request.
     pub enum FrameField {
-        /// Deviatoric stress (Pa), sqrt(3/2 s:s).
+        /// Deviatoric stress sqrt(3/2 s:s) in Pa.
         Q = "q",
-        /// Principal Cauchy stresses (Pa), descending, positive in tension.
+        /// Principal Cauchy stresses in Pa, in descending order, positive in tension.
         PrincipalStresses = "principal-stresses",
-        /// 1/F, F the factor by which the strength may be divided until the stress is on the yield surface; 1 at
-        /// yield, 0 of a law without strength.
+        /// Mobilised strength 1/F, with the factor F by which the strength may be divided until the stress reaches the
+        /// yield surface. It is 1 at yield, and 0 for a law without strength.
         MobilisedStrength = "mobilised-strength",
-        /// Deviatoric part of the logarithmic strain since the start, sqrt(2/3 e:e).
+        /// Deviatoric logarithmic strain since the start, sqrt(2/3 e:e).
         DeviatoricStrain = "deviatoric-strain",
-        /// 1 where the stress is on the yield surface, to 1e-4 of the strength, or beyond; 0 elsewhere.
+        /// 1 where the stress is on the yield surface (within 1e-4 of the strength), 0 elsewhere.
         Yielding = "yielding",
-        /// Present density (kg/m3).
+        /// Present density in kg/m3.
         Density = "density",
-        /// Pressure of the water in the pores (Pa), positive in compression.
+        /// Pore pressure in Pa, positive in compression.
         PorePressure = "pore-pressure",
-        /// Pore pressure above that of the still water (Pa), where water flows.
+        /// Pore pressure minus hydrostatic pressure in Pa, where water flows.
         ExcessPressure = "excess-pressure",
-        /// Volume of water that flows through the soil per area and time (m/s), relative to the grains.
+        /// Darcy velocity in m/s: volume of water per area and time, relative to the soil.
         Flux = "flux",
-        /// Share of pores in the volume, where water flows.
+        /// Present porosity, where water flows.
         Porosity = "porosity",
-        /// Share of the pores that water fills, where water flows.
+        /// Degree of saturation, where water flows.
         Saturation = "saturation",
-        /// Effective stress less the pore pressure (Pa), positive in tension.
+        /// Total stress in Pa: effective stress minus pore pressure, positive in tension.
         TotalStress = "total-stress",
-        /// Number of the body, in the order of the file; run.json and the frame have the names.
+        /// Number of the body in the order of the case. The names are in run.json and in the frame.
         Body = "body",
     }
 }
@@ -99,21 +99,21 @@ impl FrameField {
 choice! {
     /// What a profile reports at its places.
     pub enum ProfileQuantity {
-        /// Displacement (m).
+        /// Displacement in m.
         Displacement = "displacement",
-        /// Velocity (m/s); dynamic.
+        /// Velocity in m/s, in dynamic analyses.
         Velocity = "velocity",
-        /// Cauchy stress (Pa), positive in tension.
+        /// Cauchy stress in Pa, positive in tension.
         Stress = "stress",
-        /// Mean stress (Pa), positive in compression.
+        /// Mean stress in Pa, positive in compression.
         P = "p",
-        /// Deviatoric stress (Pa), sqrt(3/2 s:s).
+        /// Deviatoric stress sqrt(3/2 s:s) in Pa.
         Q = "q",
-        /// Accumulated plastic strain, the sum of sqrt(2/3) |dev| of its increments.
+        /// Accumulated plastic strain, the sum of sqrt(2/3) times the norm of the deviatoric plastic strain increments.
         PlasticStrain = "plastic-strain",
-        /// Pressure of the water in the pores (Pa), positive in compression.
+        /// Pore pressure in Pa, positive in compression.
         PorePressure = "pore-pressure",
-        /// Pore pressure above that of the still water (Pa), where water flows.
+        /// Pore pressure minus hydrostatic pressure in Pa, where water flows.
         ExcessPressure = "excess-pressure",
     }
 }

@@ -1,4 +1,4 @@
-//! Words of choices that the physics defines.
+//! Accepted words for options of the method, such as the mass matrix.
 
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::WallVelocity;
@@ -8,35 +8,35 @@ use bsmpm::step::mass::MassMatrix;
 use bsmpm::water::flow::PermeabilityLaw;
 
 words! { MassMatrix {
-    Lumped = "lumped": "diagonal, the paper's",
-    Consistent = "consistent": "mostly the consistent one",
+    Lumped = "lumped": "Lumped (diagonal) mass matrix, as in the paper.",
+    Consistent = "consistent": "Consistent mass matrix, blended with a small part of the lumped one.",
 } }
 
 words! { WallVelocity {
-    Own = "own": "their own: the paper's",
-    Relaxed = "relaxed": "it relaxes to that of their motion, over a path of a quarter of a cell",
+    Own = "own": "Material points keep their velocity, as in the paper.",
+    Relaxed = "relaxed": "The velocity of material points approaches that of their displacement over a distance of a quarter of a cell.",
 } }
 
 words! { Stabilisation {
-    None = "none": "the plain B-spline method",
-    FBar = "f-bar": "dilations of the step averaged",
-    FBarZhao = "f-bar-zhao": "total dilations averaged",
-    ModifiedFBar = "modified-f-bar": "the paper's: elastic strain averaged after every step, too",
-    ConsistentFBar = "consistent-f-bar": "dilations averaged by splines of the order below",
-    SubgridFBar = "subgrid-f-bar": "the same on pairs of cells",
+    None = "none": "No stabilisation: the plain B-spline method.",
+    FBar = "f-bar": "F-bar method: volume changes of the step are averaged.",
+    FBarZhao = "f-bar-zhao": "F-bar method of Zhao: total volume changes are averaged.",
+    ModifiedFBar = "modified-f-bar": "Modified F-bar method of the paper: after every step the elastic strains are averaged as well.",
+    ConsistentFBar = "consistent-f-bar": "F-bar method whose averages use B-splines of the next lower degree, with forces that are consistent with the stress.",
+    SubgridFBar = "subgrid-f-bar": "Consistent F-bar method with averages over pairs of cells.",
 } }
 
 words! { Quadrature {
-    Points = "points": "points weigh their own volumes",
-    Fitted = "fitted": "volumes that integrate splines inside bodies exactly",
+    Points = "points": "The volumes of the material points.",
+    Fitted = "fitted": "Volumes that integrate the splines inside bodies exactly.",
 } }
 
 words! { ExtendedSplines {
-    Off = "off": "all functions are unknowns",
-    Linear = "linear": "functions of nearly empty cells continue the displacement of the nearest full cell linearly",
+    Off = "off": "No extension: all functions are unknowns.",
+    Linear = "linear": "Functions of nearly empty cells continue the displacement of the nearest full cell linearly.",
 } }
 
 words! { PermeabilityLaw {
-    Constant = "constant": "it stays as it is",
-    KozenyCarman = "kozeny-carman": "it follows the porosity n as n^3/(1-n)^2",
+    Constant = "constant": "The permeability is constant.",
+    KozenyCarman = "kozeny-carman": "The permeability follows the porosity n as n^3/(1 - n)^2.",
 } }

@@ -1,4 +1,4 @@
-//! Words of keys that have no effect any more: those that are still read, and those that were removed.
+//! Accepted words that no longer have an effect.
 
 use super::{RemovedWord, Words};
 

@@ -1,4 +1,4 @@
-//! Words of what is solved and of what is kept of it.
+//! Accepted words for geometry, analysis, boundaries and initial state.
 
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
@@ -6,12 +6,12 @@ use bsmpm::model::Regime;
 choice! {
     /// Kind of the geometry.
     pub enum Geometry {
-        /// Plane strain, 1 m thick.
+        /// Plane strain. Forces, masses and energies are per metre of thickness.
         PlaneStrain = "plane-strain",
-        /// Rotational symmetry about the axis x = 0, without torsion: x is the radius, y is along the axis, zz in the
-        /// direction around it; forces, masses and energies in histories are of the whole circle.
+        /// Axisymmetry about the axis x = 0, without torsion: x is the radius, y the axial coordinate, and zz the
+        /// circumferential component. Forces, masses and energies in histories are those of the whole circle.
         Axisymmetric = "axisymmetric",
-        /// Three dimensions: z is the vertical.
+        /// Three dimensions. The axis z is vertical.
         Solid = "3d",
     } misnomers [
         "2d": "Use \"plane-strain\" or \"axisymmetric\"",
@@ -73,13 +73,13 @@ impl Geometry {
 choice! {
     /// Kind of the analysis.
     pub enum AnalysisType {
-        /// Inertia acts.
+        /// With inertia.
         Dynamic = "dynamic",
-        /// No inertia; time is a pseudo-time.
+        /// Without inertia, in pseudo-time.
         QuasiStatic = "quasi-static",
-        /// No inertia; in real time, which a strength by the rate needs.
+        /// Without inertia, in real time, for strengths that depend on the strain rate.
         InTime = "quasi-static-rate",
-        /// No inertia; water flows in real time.
+        /// Without inertia, in real time, with flowing water.
         Consolidation = "consolidation",
     } earlier ["quasi-static-in-time": "quasi-static-rate"]
 }
@@ -102,11 +102,11 @@ impl AnalysisType {
 choice! {
     /// What a soil's pore water does.
     pub enum Drainage {
-        /// Its pressure is that of the still water.
+        /// The pore pressure is that of the water table. The soil has no excess pore pressure.
         Given = "hydrostatic",
-        /// It flows, and its excess pressure is an unknown.
+        /// Water flows in the pores. The excess pore pressure is an unknown.
         Coupled = "coupled",
-        /// It stays where it is, and its excess pressure is an unknown.
+        /// Water does not flow relative to the soil. The excess pore pressure follows from the change of volume.
         Undrained = "undrained",
     } misnomers [
         "drained": "Soil without excess pore pressure is \"hydrostatic\", soil that consolidates is \"coupled\""
@@ -116,9 +116,9 @@ choice! {
 choice! {
     /// How fast the ground fails, beside how fast its water flows.
     pub enum Failure {
-        /// So slowly that it drains: every point keeps its pore pressure.
+        /// Slow failure: every material point keeps its pore pressure.
         Drained = "drained",
-        /// At once: the water stays where it is, and its pressure follows the strain.
+        /// Fast failure: water does not flow, and the pore pressure changes with the strain.
         Undrained = "undrained",
     }
 }
@@ -126,7 +126,7 @@ choice! {
 choice! {
     /// What a case looks for, which chooses settings that it leaves out.
     pub enum Purpose {
-        /// The load at which the ground fails under prescribed motion, as in the theory of plasticity.
+        /// The load at which the ground fails under a prescribed displacement, as in limit analysis.
         LimitLoad = "limit-load",
     }
 }
@@ -134,11 +134,11 @@ choice! {
 choice! {
     /// What a case leaves out of its discretisation is filled in as coarse or as fine; coarsest first.
     pub enum Accuracy {
-        /// To look at.
+        /// Coarse, for a first look.
         Draft = "draft",
-        /// As fine as the paper's.
+        /// About as fine as the discretisations of the paper.
         Standard = "standard",
-        /// To compare others with.
+        /// Fine, as a reference for other runs.
         Reference = "reference",
     }
 }
@@ -148,9 +148,9 @@ choice! {
     pub enum Order {
         /// Continuous functions.
         Linear = "linear",
-        /// Continuous slopes.
+        /// Functions with continuous first derivatives.
         Quadratic = "quadratic",
-        /// Continuous curvatures.
+        /// Functions with continuous second derivatives.
         Cubic = "cubic",
     }
 }
@@ -169,9 +169,9 @@ impl Order {
 choice! {
     /// Which grid lines are those across which strains may jump.
     pub enum C0Lines {
-        /// Those where they do.
+        /// Lines at the places where strains jump.
         Automatic = "automatic",
-        /// Only breakpoints that the grid repeats.
+        /// Only lines that `knots` repeats.
         None = "none",
     }
 }
@@ -179,20 +179,21 @@ choice! {
 choice! {
     /// Support of one face of the grid.
     pub enum Support {
-        /// All components held.
+        /// All displacement components are zero.
         Fixed = "fixed",
-        /// The normal component held.
+        /// The normal displacement is zero.
         Roller = "roller",
-        /// Smooth, and material comes off it: pushes and does not pull; with friction it is a table.
+        /// A smooth wall that transmits pressure and no tension, so that material can separate from it. A table gives
+        /// it friction.
         Contact = "contact",
-        /// Lets waves out (dynamic): nothing held but the state of `[initial]`.
+        /// A viscous boundary that absorbs waves, in dynamic analyses. It carries the stress of `[initial]`.
         Absorbing = "absorbing",
-        /// A side beside ground that shakes (dynamic): a column of soil moves there as the free field and drives it,
-        /// what differs leaves.
+        /// A lateral boundary of ground that shakes, in dynamic analyses. A column of soil gives the free-field motion.
+        /// It drives the boundary, and dashpots absorb the waves that differ from it.
         FreeField = "free-field",
-        /// Nothing held; material that leaves the grid there is counted and forgotten.
+        /// No support. Material that leaves the grid there is counted and removed.
         Outflow = "outflow",
-        /// Nothing held.
+        /// No support.
         Free = "free",
     }
 }
@@ -200,17 +201,17 @@ choice! {
 choice! {
     /// A face of the grid, and the key of its support.
     pub enum Side {
-        /// At the lowest x.
+        /// Face with the lowest x.
         Left = "left",
-        /// At the highest x.
+        /// Face with the highest x.
         Right = "right",
-        /// At the lowest y, of a solid z.
+        /// Face with the lowest y, in 3-D z.
         Bottom = "bottom",
-        /// At the highest y, of a solid z.
+        /// Face with the highest y, in 3-D z.
         Top = "top",
-        /// At the lowest y of a solid.
+        /// Face with the lowest y, in 3-D.
         Front = "front",
-        /// At the highest y of a solid.
+        /// Face with the highest y, in 3-D.
         Back = "back",
     }
 }
@@ -230,11 +231,11 @@ impl Side {
 choice! {
     /// An axis of a solid.
     pub enum Axis {
-        /// Across.
+        /// The axis x.
         X = "x",
-        /// Backwards.
+        /// The axis y.
         Y = "y",
-        /// Upwards.
+        /// The axis z, which is vertical.
         Z = "z",
     }
 }
@@ -242,9 +243,9 @@ choice! {
 choice! {
     /// What a rigid strip holds of the material at it.
     pub enum Base {
-        /// The component normal to it.
+        /// The normal displacement is prescribed.
         Smooth = "smooth",
-        /// All components.
+        /// All displacement components are prescribed.
         Rough = "rough",
     }
 }
@@ -252,9 +253,9 @@ choice! {
 choice! {
     /// What a prescribed motion holds of the material at it.
     pub enum Components {
-        /// All components.
+        /// All displacement components are prescribed.
         All = "all",
-        /// The component normal to it.
+        /// The normal displacement is prescribed.
         Normal = "normal",
     }
 }
@@ -272,11 +273,11 @@ impl Components {
 choice! {
     /// A motion of a rigid body.
     pub enum RigidMotion {
-        /// Along x.
+        /// Displacement along x.
         X = "x",
-        /// Along y.
+        /// Displacement along y.
         Y = "y",
-        /// About its reference point.
+        /// Rotation about the reference point.
         Rotation = "rotation",
     }
 }
@@ -292,7 +293,8 @@ choice! {
 choice! {
     /// How the stress at the start is brought into equilibrium.
     pub enum Settled {
-        /// With the materials' own laws: on or within their yield surfaces, and nothing moves.
+        /// Equilibrium with the laws of the materials, so that no stress is outside its yield surface. Displacements
+        /// stay zero.
         Plastic = "plastic",
     }
 }
@@ -300,17 +302,18 @@ choice! {
 choice! {
     /// What is held in a test of one point.
     pub enum Path {
-        /// The total stress along x and z, while y is driven.
+        /// The total stresses along x and z are constant, and y is prescribed.
         Triaxial = "triaxial",
-        /// The total stress along x and the strain along z, while y is driven.
+        /// The total stress along x and the strain along z are constant, and y is prescribed.
         Biaxial = "biaxial",
-        /// The strain along x and z, while y is driven.
+        /// The strains along x and z are zero, and y is prescribed.
         Oedometer = "oedometer",
-        /// Nothing: all sides are driven alike.
+        /// All directions are prescribed alike.
         Isotropic = "isotropic",
-        /// The total stress along y and the strain along x and z, while y moves along x.
+        /// The total stress along y is constant, the strains along x and z are zero, and the shear strain is
+        /// prescribed.
         SimpleShear = "simple-shear",
-        /// What its components say.
+        /// Each component is prescribed as a strain or as a stress.
         Mixed = "mixed",
     }
 }
@@ -318,7 +321,7 @@ choice! {
 choice! {
     /// Format of frames.
     pub enum Format {
-        /// One `.vtu` per frame and a `.pvd`.
+        /// One `.vtu` file per frame, and a `.pvd` file of all frames.
         Vtu = "vtu",
     } later ["vtkhdf"]
 }

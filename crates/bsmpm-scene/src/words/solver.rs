@@ -1,14 +1,13 @@
-//! Words of the solver: the non-linear iteration, and the linear solver by PETSc's own names.
+//! Accepted words for nonlinear iteration and linear solver.
 
 choice! {
     /// The non-linear iteration.
     pub enum Nonlinear {
-        /// The controller's choice: all recent secants on the stiffness at a step's first guess, Newton's method where
-        /// they stall.
+        /// Quasi-Newton method with multiple secants, and Newton's method if it stalls.
         Auto = "auto",
-        /// The paper's rank-one update.
+        /// Broyden's rank-one update, as in the paper.
         Broyden = "broyden",
-        /// Newton's method with the complete derivative.
+        /// Newton's method with the consistent tangent.
         Newton = "newton",
     }
 }
@@ -16,16 +15,15 @@ choice! {
 choice! {
     /// The linear solver in a word.
     pub enum LinearSolver {
-        /// A factor of the stiffness by nested dissection of the grid.
+        /// Direct solver: a Cholesky factorisation by nested dissection of the grid.
         Direct = "direct",
         /// Conjugate gradients with PETSc's algebraic multigrid.
         Multigrid = "multigrid",
-        /// An incomplete Cholesky factor of every rank's block, applied once in place of a solution.
+        /// One application of an incomplete Cholesky factorisation of each rank's block, as an approximate solution.
         IncompleteCholesky = "incomplete-cholesky",
-        /// Two cycles of PETSc's algebraic multigrid in place of a solution.
+        /// Two cycles of PETSc's algebraic multigrid, as an approximate solution.
         MultigridCycles = "multigrid-cycles",
-        /// Two cycles of multigrid over the grid's own splines, with boxes of nodes as its smoother, in place of a
-        /// solution: for solids on one rank.
+        /// Two cycles of geometric multigrid over the B-splines, as an approximate solution. Only for 3-D on one rank.
         SplineMultigrid = "spline-multigrid",
     }
 }
@@ -33,7 +31,7 @@ choice! {
 choice! {
     /// Krylov method, by PETSc's name.
     pub enum Ksp {
-        /// The preconditioner alone, which solves by itself.
+        /// The preconditioner alone, for direct solvers.
         Preonly = "preonly",
         /// Conjugate gradients.
         Cg = "cg",
@@ -41,7 +39,7 @@ choice! {
         Minres = "minres",
         /// Generalised minimal residuals.
         Gmres = "gmres",
-        /// The same with a preconditioner that may vary.
+        /// Flexible GMRES, for preconditioners that vary.
         Fgmres = "fgmres",
         /// Stabilised biconjugate gradients.
         Bcgs = "bcgs",
@@ -51,19 +49,19 @@ choice! {
 choice! {
     /// Preconditioner or direct solver, by PETSc's name but for the last.
     pub enum Pc {
-        /// Cholesky's factorisation.
+        /// Cholesky factorisation.
         Cholesky = "cholesky",
-        /// Factorisation without symmetry.
+        /// LU factorisation.
         Lu = "lu",
-        /// The whole system on every rank.
+        /// Direct solution of the whole system on every rank.
         Redundant = "redundant",
         /// No preconditioner.
         None = "none",
-        /// The diagonal.
+        /// Jacobi: the diagonal.
         Jacobi = "jacobi",
-        /// The diagonal blocks of nodes.
+        /// Point-block Jacobi: the diagonal blocks of nodes.
         Pbjacobi = "pbjacobi",
-        /// The diagonal blocks of ranks.
+        /// Block Jacobi: the diagonal blocks of ranks.
         Bjacobi = "bjacobi",
         /// Successive over-relaxation.
         Sor = "sor",
@@ -71,15 +69,15 @@ choice! {
         Asm = "asm",
         /// Incomplete Cholesky factorisation.
         Icc = "icc",
-        /// Incomplete factorisation without symmetry.
+        /// Incomplete LU factorisation.
         Ilu = "ilu",
         /// PETSc's algebraic multigrid.
         Gamg = "gamg",
-        /// Trilinos' algebraic multigrid.
+        /// Algebraic multigrid of Trilinos.
         Ml = "ml",
         /// Preconditioners of hypre.
         Hypre = "hypre",
-        /// This program's own: multigrid over the grid's splines, for solids on one rank.
+        /// Geometric multigrid of bsmpm over the B-splines. Only for 3-D on one rank.
         SplineMultigrid = "spline-multigrid",
     }
 }
@@ -99,11 +97,11 @@ impl Pc {
 choice! {
     /// Package of a direct solver, by PETSc's name but for the first.
     pub enum Factor {
-        /// This program's own: nested dissection of the grid.
+        /// Nested dissection of the grid, built into bsmpm.
         Dissection = "dissection",
         /// MUMPS.
         Mumps = "mumps",
-        /// PETSc's own.
+        /// PETSc.
         Petsc = "petsc",
         /// SuperLU.
         Superlu = "superlu",

@@ -1,4 +1,4 @@
-//! The rows, by the kind of mistake.
+//! Invalid cases by kind of mistake.
 
 use super::{Row, row};
 
@@ -132,7 +132,7 @@ pub const LANGUAGE: &[Row] = &[
     row("upper = [4.0, 3.0]", "upper = [4.0, 3.0", "", "the bracket `[` is not closed before line 12"),
     row("type = \"dynamic\"", "type = \"dynamic", "", "E0005"),
     row("format = \"vtu\"", "checkpoint = { keep = 0 }", "output.checkpoint.keep", "1 <= keep <= 1000"),
-    row("format = \"vtu\"", "checkpoint = { wall = \"15 m\" }", "output.checkpoint.wall", "a time by the clock"),
+    row("format = \"vtu\"", "checkpoint = { wall = \"15 m\" }", "output.checkpoint.wall", "a wall-clock time"),
     row("format = \"vtu\"", "checkpoint = { wall = 0 }", "output.checkpoint.wall", "wall > 0"),
     row("format = \"vtu\"", "checkpoint = 500", "output.checkpoint", "a table, checkpoint = {"),
 ];

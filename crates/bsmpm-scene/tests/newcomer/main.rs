@@ -1,6 +1,4 @@
-//! Wrong inputs that a newcomer tried: each says what is wrong and what to do, and no slip has more errors than one.
-//!
-//! The numbers are those of the list that was drawn up; what needs a run is in the trials.
+//! Tests messages for mistakes of new users that need no run.
 
 mod rows;
 

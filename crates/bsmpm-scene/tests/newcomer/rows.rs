@@ -1,4 +1,4 @@
-//! The rows: what a newcomer typed, and what the program has to say.
+//! Mistakes of new users, with expected messages.
 
 use super::{Row, Says};
 
