@@ -1,12 +1,6 @@
-//! `bsmpm fos`: the factor of safety of a case by strength reduction, or its critical seismic coefficient. What is
-//! sought stands in `sought`; the case is read in `subject` and refused in `refusal`, factors are chosen in `search`,
-//! trials are made in `trial`, measured in `moved` and judged in `curve`, results are set in `report` and drawn in
-//! `picture`.
+//! `bsmpm fos`: factor of safety by strength reduction, or critical seismic coefficient, (T9.5) to (T9.7).
 //!
-//! Loading soil is path dependent, so every trial carries its load from zero, or goes on from the end of a stage that
-//! was made with the whole strength: a state of another strength is no state on the way. What could be saved that way
-//! is taken from trials that run at the same time instead: `guess` says which ones the search may ask for next, `jobs`
-//! runs them. They shorten the search and change nothing else in it.
+//! `search` chooses factors, `trial` makes a run with each, and `curve` judges its displacement.
 
 use std::fs;
 use std::path::PathBuf;
@@ -30,6 +24,7 @@ mod sought;
 mod subject;
 mod trial;
 
+pub use refusal::refusals;
 use report::FosReport;
 use search::{GREATEST, SearchPlan};
 pub use sought::PushedSide;
