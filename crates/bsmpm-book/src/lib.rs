@@ -1,59 +1,158 @@
-//! The book of bsmpm, an mdBook: its chapters are the Markdown files beside this one, in the order of `SUMMARY.md`.
-//! `scripts/book` builds the HTML, `scripts/book --check` runs every command.
+//! The manual of bsmpm. Its chapters are the Markdown files in this folder and its sub-folders, in the order of
+//! `SUMMARY.md`. `scripts/book` builds it with mdBook and runs its commands; this library reads it for the tests, for
+//! the walk through its commands (`examples/walk.rs`) and for the build (`main.rs`).
 //!
-//! What a fenced block is, its attributes say, separated by commas:
+//! # Fenced blocks
+//!
+//! The words after the fence say what a block is. They are separated by commas.
 //!
 //! | fence | meaning |
 //! | --- | --- |
-//! | `toml,file=NAME`, `python,file=NAME` | the file NAME of the reader's directory; a `toml` one is a complete case |
-//! | `toml,append=NAME` | is appended to NAME, which stays a complete case |
-//! | `sh` | commands of the reader, run in the order of the book in one directory; `sh,exit=N`: they end with code N |
-//! | `sh,not-run` | commands that cannot run in a check; they are counted and listed |
-//! | `text,output` | what the commands before it print among other lines; `...` stands for anything within a line |
-//! | `rust` | is compiled and run as a doctest of this crate |
+//! | `toml,file=NAME`, `python,file=NAME` | The file NAME of the reader. A `toml` file is a complete case. |
+//! | `toml,append=NAME` | Text that is appended to NAME, which stays a complete case. |
+//! | `toml,wrong` | A case with an error, besides `file=` or `append=`. |
+//! | `toml,coarse=KEY:VALUE` | In a coarse run, the line `KEY = ...` of this block is `KEY = VALUE`. May be repeated. |
+//! | `sh` | Commands of the reader. They end with code 0. |
+//! | `sh,exit=N` | Commands that end with code N. |
+//! | `sh,not-run` | Commands that cannot run in a check. They are counted and listed. |
+//! | `text,output` | Lines that the commands before it print, among others; `...` matches anything within a line. |
+//! | `text,output,full` | The same, compared only in a full run, because a coarse run prints other numbers. |
+//! | `rust` | Compiled and run as a doctest of this crate. |
 //!
-//! Links out of the book are relative paths of the repository, so that they work where its files are browsed; in the
-//! built HTML they lead to the files of the clone that it was built from. Pictures of `cases/pictures` are copied.
+//! Each tutorial begins in an empty directory with the repository's `cases/`. All
+//! other chapters share one such directory, in the order of the manual.
+//!
+//! # Links and pictures
+//!
+//! A link is the path of a file, relative to the page, so that it works where the repository is browsed. In the built
+//! manual, a link to a file of the repository leads to a page with a copy of that file.
+//!
+//! A picture that the commands of its chapter draw is followed by a comment with the path that they write:
+//! `![caption](../pictures/tutorials/slope.png)<!-- slope.out/strain.png -->`. A coarse run checks that this file was
+//! written. A full run also copies it to the place that the link names.
+//!
+//! # Equations
+//!
+//! `\tag{3.2}` numbers equation 2 of chapter 3 of the theory manual. Source code and other pages cite it as `(T3.2)`.
 #![forbid(unsafe_code)]
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::{fs, io};
 
-#[doc = include_str!("adding-a-law.md")]
-pub mod adding_a_law {}
+#[cfg(doctest)]
+#[doc = include_str!("how-to/add-a-law.md")]
+pub mod add_a_law {}
 
-/// A chapter.
+/// One page of the manual.
 #[derive(Clone, Debug)]
 pub struct Chapter {
-    /// Name of its file in [`source`].
+    /// Path of its file, relative to [`source`].
     pub file: String,
-    /// Its Markdown.
+    /// Markdown.
     pub text: String,
+}
+
+impl Chapter {
+    /// Whether this is a tutorial: its commands run in a directory that no other chapter uses.
+    pub fn is_tutorial(&self) -> bool {
+        self.file.starts_with("tutorials/")
+    }
+
+    /// Folder that its links are relative to.
+    pub fn folder(&self) -> PathBuf {
+        let path = source().join(&self.file);
+        path.parent().map_or_else(source, Path::to_path_buf)
+    }
 }
 
 /// A fenced block of a chapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Block {
-    /// Line of its fence, from 1.
+    /// Line of its fence in the chapter, from 1.
     pub line: usize,
-    /// Its language; empty without one.
+    /// First word after the fence; empty without one.
     pub language: String,
-    /// Its other attributes as written.
+    /// The other words after the fence.
     pub attributes: Vec<String>,
-    /// What is between the fences.
+    /// Text between the fences.
     pub text: String,
 }
 
 impl Block {
     /// Whether it has this attribute.
     pub fn is(&self, attribute: &str) -> bool {
-        self.attributes.iter().any(|own| own == attribute)
+        self.attributes.iter().any(|present| present == attribute)
     }
 
-    /// What follows `NAME=` in its attributes.
+    /// The text after `NAME=` in its attributes.
     pub fn value(&self, name: &str) -> Option<&str> {
-        self.attributes.iter().find_map(|own| own.strip_prefix(name)?.strip_prefix('='))
+        self.values(name).next()
     }
+
+    /// The text after each `NAME=` in its attributes.
+    pub fn values(&self, name: &str) -> impl Iterator<Item = &str> {
+        self.attributes.iter().filter_map(move |attribute| attribute.strip_prefix(name)?.strip_prefix('='))
+    }
+
+    /// Its text in a coarse run: every `coarse=KEY:VALUE` replaces one line.
+    ///
+    /// # Errors
+    /// A sentence, if an attribute has no colon, or if the block has not exactly one line with its key.
+    pub fn coarse_text(&self) -> Result<String, String> {
+        let mut lines: Vec<String> = self.text.lines().map(str::to_owned).collect();
+        for replacement in self.values("coarse") {
+            let (key, value) = replacement.split_once(':').ok_or(format!("coarse={replacement} has no colon"))?;
+            let mut same_key = lines.iter_mut().filter(|line| is_line_of(line, key));
+            let line = same_key.next().ok_or(format!("coarse={replacement}: no line begins with `{key} =`"))?;
+            if same_key.next().is_some() {
+                return Err(format!("coarse={replacement}: two lines begin with `{key} =`"));
+            }
+            *line = format!("{key} = {value}");
+        }
+        Ok(lines.iter().map(|line| format!("{line}\n")).collect())
+    }
+}
+
+/// Whether a line of a case file sets this key.
+fn is_line_of(line: &str, key: &str) -> bool {
+    line.split_once('=').is_some_and(|(name, _)| name.trim() == key)
+}
+
+/// A link or a picture in the text of a chapter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Link {
+    /// Line of its target, from 1.
+    pub line: usize,
+    /// Path or address, with its anchor.
+    pub target: String,
+}
+
+impl Link {
+    /// Whether it leads to another site.
+    pub fn is_external(&self) -> bool {
+        self.target.contains("://")
+    }
+
+    /// Path of the file without the anchor; empty for an anchor of the same page.
+    pub fn path(&self) -> &str {
+        self.target.split('#').next().unwrap_or_default()
+    }
+
+    /// Anchor without `#`; empty without one.
+    pub fn anchor(&self) -> &str {
+        self.target.split_once('#').map_or("", |(_, anchor)| anchor)
+    }
+}
+
+/// A picture that the commands of a chapter draw.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Line of its target, from 1.
+    pub line: usize,
+    /// Place of the picture in the manual, relative to the chapter.
+    pub target: String,
+    /// File that the commands write, relative to the reader's directory.
+    pub drawn: String,
 }
 
 /// Folder of the chapters.
@@ -61,53 +160,192 @@ pub fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
+/// Root of the repository.
+pub fn repository() -> PathBuf {
+    normalised(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
+}
+
+/// The path without `.` and `..`, for paths without symbolic links.
+pub fn normalised(path: &Path) -> PathBuf {
+    let mut found = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                found.pop();
+            }
+            other => found.push(other),
+        }
+    }
+    found
+}
+
 /// The chapters in the order of `SUMMARY.md`.
 ///
 /// # Errors
-/// When the summary or a chapter that it names cannot be read.
+/// If the summary, or a chapter that it names, cannot be read.
 pub fn chapters() -> io::Result<Vec<Chapter>> {
     let summary = fs::read_to_string(source().join("SUMMARY.md"))?;
-    let files = links(&summary).into_iter().map(|(_, file)| file);
-    files.map(|file| Ok(Chapter { text: fs::read_to_string(source().join(&file))?, file })).collect()
+    let read = |file: String| match fs::read_to_string(source().join(&file)) {
+        Ok(text) => Ok(Chapter { file, text }),
+        Err(error) => Err(io::Error::new(error.kind(), format!("{file} of SUMMARY.md: {error}"))),
+    };
+    files_of_summary(&summary).into_iter().map(read).collect()
 }
 
-/// The fenced blocks of a chapter in order.
+/// The files that a `SUMMARY.md` lists, at any depth. Headings of parts, and chapters without a file, are left out.
+pub fn files_of_summary(summary: &str) -> Vec<String> {
+    let targets = links(summary).into_iter().map(|link| link.target);
+    targets.filter(|target| !target.is_empty()).collect()
+}
+
+/// The fenced blocks of a chapter in order. In a list, a fence and its text are indented alike.
 pub fn blocks(text: &str) -> Vec<Block> {
-    let (mut found, mut open): (Vec<Block>, Option<Block>) = (Vec::new(), None);
+    let mut found: Vec<Block> = Vec::new();
+    let mut indentation = "";
+    let mut is_open = false;
     for (number, line) in text.lines().enumerate() {
-        match (line.strip_prefix("```"), &mut open) {
-            (Some(_), Some(_)) => found.extend(open.take()),
-            (None, Some(block)) => {
-                block.text.push_str(line);
-                block.text.push('\n');
-            }
-            (Some(info), None) => {
-                let mut words = info.split(',').map(|word| word.trim().to_owned());
+        match (words_after_fence(line), is_open) {
+            (Some(_), true) => is_open = false,
+            (Some(words), false) => {
+                is_open = true;
+                indentation = &line[..line.len() - line.trim_start().len()];
+                let mut words = separated(words).into_iter();
                 let language = words.next().unwrap_or_default();
-                open = Some(Block { line: number + 1, language, attributes: words.collect(), text: String::new() });
+                found.push(Block { line: number + 1, language, attributes: words.collect(), text: String::new() });
             }
-            (None, None) => {}
+            (None, true) => {
+                if let Some(block) = found.last_mut() {
+                    block.text.push_str(line.strip_prefix(indentation).unwrap_or(line));
+                    block.text.push('\n');
+                }
+            }
+            (None, false) => {}
         }
     }
     found
 }
 
-/// Links and pictures outside of fenced blocks: line, from 1, and target.
-pub fn links(text: &str) -> Vec<(usize, String)> {
-    let (mut found, mut fenced) = (Vec::new(), false);
-    for (number, line) in text.lines().enumerate() {
-        fenced ^= line.starts_with("```");
-        if !fenced {
-            let targets = line.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
-            found.extend(targets.map(|(target, _)| (number + 1, target.to_owned())));
+/// The words after a fence; none if the line is no fence.
+fn words_after_fence(line: &str) -> Option<&str> {
+    line.trim_start().strip_prefix("```")
+}
+
+/// The words between commas. A comma within quotes or brackets does not separate.
+fn separated(words: &str) -> Vec<String> {
+    let mut found = vec![String::new()];
+    let mut depth = 0;
+    let mut is_quoted = false;
+    for letter in words.chars() {
+        match letter {
+            '"' => is_quoted = !is_quoted,
+            '[' | '{' if !is_quoted => depth += 1,
+            ']' | '}' if !is_quoted => depth -= 1,
+            _ => {}
+        }
+        match found.last_mut() {
+            Some(word) if letter != ',' || is_quoted || depth > 0 => word.push(letter),
+            _ => found.push(String::new()),
+        }
+    }
+    found.iter().map(|word| word.trim().to_owned()).collect()
+}
+
+/// The text with the lines of fenced blocks emptied, so that the other lines keep their numbers.
+pub fn prose(text: &str) -> String {
+    let mut found = String::new();
+    let mut is_open = false;
+    for line in text.lines() {
+        let is_fence = words_after_fence(line).is_some();
+        if !is_open && !is_fence {
+            found.push_str(line);
+        }
+        is_open ^= is_fence;
+        found.push('\n');
+    }
+    found
+}
+
+/// Links and pictures outside of fenced blocks.
+pub fn links(text: &str) -> Vec<Link> {
+    let mut found = Vec::new();
+    for (number, line) in prose(text).lines().enumerate() {
+        let targets = line.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+        found.extend(targets.map(|(target, _)| Link { line: number + 1, target: target.to_owned() }));
+    }
+    found
+}
+
+/// The text with the targets of its links and pictures replaced, except in fenced blocks.
+pub fn relinked(text: &str, mut replace: impl FnMut(&Link) -> String) -> String {
+    let mut found = String::new();
+    for ((number, line), prose_line) in text.lines().enumerate().zip(prose(text).lines()) {
+        let mut pieces = line.split("](");
+        found.push_str(pieces.next().unwrap_or_default());
+        for piece in pieces {
+            found.push_str("](");
+            match piece.split_once(')') {
+                Some((target, rest)) if !prose_line.is_empty() => {
+                    found.push_str(&replace(&Link { line: number + 1, target: target.to_owned() }));
+                    found.push(')');
+                    found.push_str(rest);
+                }
+                _ => found.push_str(piece),
+            }
+        }
+        found.push('\n');
+    }
+    found
+}
+
+/// The pictures that are followed by a comment with the file that the commands draw.
+pub fn pictures(text: &str) -> Vec<Picture> {
+    let prose = prose(text);
+    let mut found = Vec::new();
+    for (start, _) in prose.match_indices("![") {
+        let Some((caption, rest)) = prose[start..].split_once("](") else { continue };
+        let Some((target, rest)) = rest.split_once(')') else { continue };
+        let comment = rest.trim_start().strip_prefix("<!--").and_then(|comment| comment.split_once("-->"));
+        if let Some((drawn, _)) = comment {
+            let line = prose[..start + caption.len()].matches('\n').count() + 1;
+            found.push(Picture { line, target: target.to_owned(), drawn: drawn.trim().to_owned() });
         }
     }
     found
+}
+
+/// Numbers of the equations of a chapter, as its `\tag{...}` give them.
+pub fn tags(text: &str) -> Vec<String> {
+    let tags = text.split("\\tag{").skip(1);
+    tags.filter_map(|rest| Some(rest.split_once('}')?.0.to_owned())).collect()
+}
+
+/// Numbers of the equations of the theory manual that a text cites: `3.2` for each `(T3.2)`.
+pub fn cited_equations(text: &str) -> Vec<String> {
+    let cited = text.split("(T").skip(1).filter_map(|rest| rest.split_once(')'));
+    cited.map(|(number, _)| number.to_owned()).filter(|number| is_equation_number(number)).collect()
+}
+
+/// Whether this is two numbers with a full stop between them.
+fn is_equation_number(text: &str) -> bool {
+    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    text.split_once('.').is_some_and(|(chapter, equation)| is_number(chapter) && is_number(equation))
+}
+
+/// Anchor of a heading, given its line in the Markdown.
+pub fn anchor(heading: &str) -> String {
+    let title = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept = title.chars().filter(|letter| letter.is_alphanumeric() || matches!(letter, ' ' | '-' | '_'));
+    kept.map(|letter| if letter == ' ' { '-' } else { letter }).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn link(line: usize, target: &str) -> Link {
+        Link { line, target: target.to_owned() }
+    }
 
     #[test]
     fn blocks_and_links_are_found() {
@@ -116,6 +354,59 @@ mod tests {
         assert_eq!(found.len(), 2);
         assert_eq!((found[0].line, found[0].value("file")), (2, Some("x.toml")));
         assert_eq!((found[1].language.as_str(), found[1].text.as_str()), ("", "plain\n"));
-        assert_eq!(links(text), [(1, "b.md#c".to_owned()), (9, "q.png".to_owned())]);
+        assert_eq!(links(text), [link(1, "b.md#c"), link(9, "q.png")]);
+        let in_list = &blocks("1. Run:\n\n   ```sh,exit=2\n   for a in b; do\n     false\n   done\n   ```\n")[0];
+        assert_eq!(in_list.value("exit"), Some("2"));
+        assert_eq!(in_list.text, "for a in b; do\n  false\ndone\n");
+        assert_eq!((links(text)[0].path(), links(text)[0].anchor()), ("b.md", "c"));
+    }
+
+    #[test]
+    fn a_summary_may_be_nested() {
+        let summary = "# Summary\n\n[Start](index.md)\n\n# Tutorials\n\n- [First run](tutorials/first-run.md)\n  \
+            - [Draft]()\n    - [Deep](tutorials/deep/page.md)\n\n---\n\n[End](decisions.md)\n";
+        let files = files_of_summary(summary);
+        assert_eq!(files, ["index.md", "tutorials/first-run.md", "tutorials/deep/page.md", "decisions.md"]);
+    }
+
+    #[test]
+    fn a_coarse_run_replaces_whole_lines() {
+        let fence = "```toml,file=x.toml,coarse=accuracy:\"a, b\",coarse=cells:[4, 2]";
+        let block = &blocks(&format!("{fence}\naccuracy = \"fine\"\n  cells = [40, 20]  # many\nfor = 1\n```\n"))[0];
+        assert_eq!(block.value("file"), Some("x.toml"));
+        assert_eq!(block.coarse_text().unwrap(), "accuracy = \"a, b\"\ncells = [4, 2]\nfor = 1\n");
+        let with = |words: &str| blocks(&format!("```toml,{words}\ndt = 1\ndtmax = 2\nh = 1\nh = 2\n```\n"))[0].clone();
+        assert_eq!(with("coarse=dt:3").coarse_text().unwrap(), "dt = 3\ndtmax = 2\nh = 1\nh = 2\n");
+        assert!(with("coarse=steps:3").coarse_text().unwrap_err().contains("no line begins with `steps =`"));
+        assert!(with("coarse=h:3").coarse_text().unwrap_err().contains("two lines"));
+        assert!(with("coarse=dt=3").coarse_text().unwrap_err().contains("no colon"));
+    }
+
+    #[test]
+    fn pictures_name_the_file_that_is_drawn() {
+        let text =
+            "![no comment](a.png)\n\n![two lines\nof it](../b.png)<!-- x.out/b.png -->\n![c](c.png)\n<!-- c -->\n";
+        let picture =
+            |line, target: &str, drawn: &str| Picture { line, target: target.to_owned(), drawn: drawn.to_owned() };
+        assert_eq!(pictures(text), [picture(4, "../b.png", "x.out/b.png"), picture(5, "c.png", "c")]);
+    }
+
+    #[test]
+    fn links_are_replaced_outside_of_blocks() {
+        let text = "a [b](c) [d](e.md#f)\n```sh\n[g](h)\n```\nend\n";
+        let replaced = relinked(text, |link| format!("{}:{}", link.line, link.path()));
+        assert_eq!(replaced, "a [b](1:c) [d](1:e.md)\n```sh\n[g](h)\n```\nend\n");
+    }
+
+    #[test]
+    fn equations_are_numbered_and_cited() {
+        assert_eq!(tags("$$\nx = 1 \\tag{3.2}\n$$\n$$ y \\tag{3.10} $$"), ["3.2", "3.10"]);
+        assert_eq!(cited_equations("F-bar (T3.2), (T3), (T x.1), (T3.x) and (T12.10)."), ["3.2", "12.10"]);
+    }
+
+    #[test]
+    fn anchors_and_paths_are_normalised() {
+        assert_eq!(anchor("## What `bsmpm-par` does: a_b"), "what-bsmpm-par-does-a_b");
+        assert_eq!(normalised(Path::new("/a/b/../c/./d")), Path::new("/a/c/d"));
     }
 }

@@ -1,21 +1,59 @@
-//! What of the book can be judged without the solver: its cases, its links, and whether its reference is current.
+//! What of the manual can be judged without the solver: cases, fences, links, equations, and generated pages.
 
-use bsmpm_book::{blocks, chapters, links, source};
+use bsmpm_book::{
+    Block, Chapter, Link, anchor, blocks, chapters, cited_equations, links, normalised, pictures, prose, repository,
+    source, tags,
+};
 use bsmpm_scene::Case;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Languages of blocks, so that none is passed over by a slip.
+/// Languages of blocks.
 const LANGUAGES: [&str; 5] = ["toml", "sh", "python", "text", "rust"];
 
+/// Other words after a fence.
+const ATTRIBUTES: [&str; 8] = ["file", "append", "coarse", "exit", "not-run", "output", "full", "wrong"];
+
+/// Chapter and line of a fault.
+fn place(chapter: &Chapter, line: usize) -> String {
+    format!("{}:{line}", chapter.file)
+}
+
+/// The files with this extension in a folder and the folders below it, except build results and hidden folders.
+fn files_below(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() && !path.is_symlink() && name != "target" && !name.starts_with('.') {
+            found.extend(files_below(&path, extension));
+        } else if path.extension().is_some_and(|found| found == extension) {
+            found.push(path);
+        }
+    }
+    found
+}
+
 #[test]
-fn every_case_is_valid() {
+fn every_case_is_valid_as_printed() {
+    assert_cases_are_valid(|block| Ok(block.text.clone()));
+}
+
+#[test]
+fn every_case_is_valid_in_a_coarse_run() {
+    assert_cases_are_valid(Block::coarse_text);
+}
+
+/// Reads every case of the manual, with the text of a block as given.
+fn assert_cases_are_valid(text_of: impl Fn(&Block) -> Result<String, String>) {
     let mut cases = 0;
-    let mut files: BTreeMap<String, String> = BTreeMap::new();
+    let mut shared: BTreeMap<String, String> = BTreeMap::new();
     for chapter in chapters().unwrap() {
+        let mut alone = BTreeMap::new();
+        let files = if chapter.is_tutorial() { &mut alone } else { &mut shared };
         for block in blocks(&chapter.text).into_iter().filter(|block| block.language == "toml") {
-            let place = format!("{}:{}", chapter.file, block.line);
+            let place = place(&chapter, block.line);
             let name = block.value("file").or(block.value("append")).unwrap_or_else(|| panic!("{place}: file=NAME"));
             let file = files.entry(name.to_owned()).or_default();
             assert_eq!(
@@ -23,7 +61,7 @@ fn every_case_is_valid() {
                 block.value("file").is_some(),
                 "{place}: appended to nothing, or written twice"
             );
-            file.push_str(&block.text);
+            file.push_str(&text_of(&block).unwrap_or_else(|fault| panic!("{place}: {fault}")));
             match (Case::from_text(name, file, &[]), block.is("wrong")) {
                 (Ok(_), false) | (Err(_), true) => cases += 1,
                 (Ok(_), true) => panic!("{place}: a valid case is called wrong"),
@@ -31,72 +69,181 @@ fn every_case_is_valid() {
             }
         }
     }
-    assert!(cases > 0, "the book has no case");
+    assert!(cases > 0, "the manual has no case");
 }
 
 #[test]
-fn every_block_says_what_it_is() {
+fn every_fence_is_known() {
     for chapter in chapters().unwrap() {
         for block in blocks(&chapter.text) {
-            let place = format!("{}:{}", chapter.file, block.line);
+            let place = place(&chapter, block.line);
             assert!(LANGUAGES.contains(&block.language.as_str()), "{place}: language \"{}\"", block.language);
             for attribute in &block.attributes {
                 let name = attribute.split('=').next().unwrap_or_default();
-                assert!(
-                    ["file", "append", "exit", "not-run", "output", "wrong"].contains(&name),
-                    "{place}: {attribute}"
-                );
+                assert!(ATTRIBUTES.contains(&name), "{place}: {attribute}");
             }
         }
     }
 }
 
 #[test]
-fn the_reference_is_current() {
-    let committed = fs::read_to_string(source().join("reference.md")).unwrap();
-    let renew = "renew it: target/release/bsmpm keys > crates/bsmpm-book/src/reference.md";
-    assert!(committed == bsmpm_scene::reference(), "the schema has changed since reference.md was made; {renew}");
+fn rust_code_is_a_doctest() {
+    let library = fs::read_to_string(source().join("lib.rs")).unwrap();
+    for chapter in chapters().unwrap() {
+        let has_rust = blocks(&chapter.text).iter().any(|block| block.language == "rust");
+        let include = format!("include_str!(\"{}\")", chapter.file);
+        assert!(!has_rust || library.contains(&include), "{} has Rust code, lib.rs has no {include}", chapter.file);
+    }
+}
+
+#[test]
+fn the_reference_of_keys_is_current() {
+    assert_is_current(&["reference/keys.md", "reference.md"], &bsmpm_scene::reference(), "keys");
 }
 
 #[test]
 fn the_catalogue_of_messages_is_current() {
-    let committed = fs::read_to_string(source().join("messages.md")).unwrap();
-    let renew = "renew it: target/release/bsmpm explain --all > crates/bsmpm-book/src/messages.md";
-    assert!(committed == bsmpm_messages::catalogue(), "messages have changed since messages.md was made; {renew}");
+    assert_is_current(&["reference/messages.md", "messages.md"], &bsmpm_messages::catalogue(), "explain --all");
+}
+
+/// Compares the first of these chapters that exists with what `bsmpm COMMAND` prints.
+fn assert_is_current(files: &[&str], generated: &str, command: &str) {
+    let file = files.iter().find(|file| source().join(file).exists()).unwrap_or_else(|| panic!("no {files:?}"));
+    let committed = fs::read_to_string(source().join(file)).unwrap();
+    let renew = format!("target/release/bsmpm {command} > crates/bsmpm-book/src/{file}");
+    assert!(committed == generated, "{file} is not what the program prints; renew it: {renew}");
 }
 
 #[test]
 fn every_link_leads_somewhere() {
     let mut wrong = Vec::new();
     for chapter in chapters().unwrap() {
-        for (line, target) in links(&chapter.text).into_iter().filter(|(_, target)| !target.contains("://")) {
-            let (file, anchor) = target.split_once('#').unwrap_or((&target, ""));
-            let path = if file.is_empty() { source().join(&chapter.file) } else { source().join(file) };
-            let there = path.exists() && (anchor.is_empty() || anchors(&path).contains(anchor));
-            if !there {
-                wrong.push(format!("{}:{line}: {target}", chapter.file));
+        for link in links(&chapter.text).into_iter().filter(|link| !link.is_external()) {
+            if !leads_somewhere(&chapter, &link) {
+                wrong.push(format!("{}: {}", place(&chapter, link.line), link.target));
             }
         }
     }
     assert!(wrong.is_empty(), "broken links:\n{}", wrong.join("\n"));
 }
 
-/// What headings of a file may be reached by.
+/// Whether the file of a link exists and has its anchor.
+fn leads_somewhere(chapter: &Chapter, link: &Link) -> bool {
+    let path = match link.path() {
+        "" => source().join(&chapter.file),
+        path => normalised(&chapter.folder().join(path)),
+    };
+    path.exists() && (link.anchor().is_empty() || anchors(&path).contains(link.anchor()))
+}
+
+/// Anchors of the headings of a file.
 fn anchors(path: &Path) -> BTreeSet<String> {
     let text = fs::read_to_string(path).unwrap();
-    let headings = text.lines().filter(|line| line.starts_with('#'));
-    let kept = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
-    let slug = |line: &str| -> String {
-        let heading = line.trim_start_matches('#').trim().to_lowercase();
-        heading.chars().filter(|c| kept(*c)).map(|c| if c == ' ' { '-' } else { c }).collect()
-    };
-    headings.map(slug).collect()
+    prose(&text).lines().filter(|line| line.starts_with('#')).map(anchor).collect()
+}
+
+#[test]
+fn drawn_pictures_have_a_place_in_the_manual() {
+    for chapter in chapters().unwrap() {
+        for picture in pictures(&chapter.text) {
+            let path = normalised(&chapter.folder().join(&picture.target));
+            let place = place(&chapter, picture.line);
+            assert!(path.starts_with(source().join("pictures")), "{place}: a full run would write {}", path.display());
+            assert!(!picture.drawn.starts_with(['/', '.']), "{place}: {} is not in the directory", picture.drawn);
+        }
+    }
 }
 
 #[test]
 fn every_chapter_is_in_the_summary() {
-    let listed: BTreeSet<String> = chapters().unwrap().into_iter().map(|chapter| chapter.file).collect();
-    let files = fs::read_dir(source()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let chapters: BTreeSet<String> = files.filter(|name| name.ends_with(".md") && name != "SUMMARY.md").collect();
-    assert_eq!(listed, chapters);
+    let listed: Vec<String> = chapters().unwrap().into_iter().map(|chapter| chapter.file).collect();
+    let files = files_below(&source(), "md").into_iter();
+    let relative = files.map(|path| path.strip_prefix(source()).unwrap().to_string_lossy().into_owned());
+    let unlisted: Vec<String> = relative.filter(|file| file != "SUMMARY.md" && !listed.contains(file)).collect();
+    assert!(unlisted.is_empty(), "not in SUMMARY.md: {unlisted:?}");
+    let different: BTreeSet<&String> = listed.iter().collect();
+    assert_eq!(listed.len(), different.len(), "SUMMARY.md lists a chapter twice");
+}
+
+#[test]
+fn every_chapter_has_one_title() {
+    for chapter in chapters().unwrap() {
+        let titles = prose(&chapter.text).lines().filter(|line| line.starts_with("# ")).count();
+        assert!(titles == 1 && chapter.text.starts_with("# "), "{} begins with its only title", chapter.file);
+    }
+}
+
+/// The chapters of the theory manual, in order.
+fn theory() -> Vec<Chapter> {
+    chapters().unwrap().into_iter().filter(|chapter| chapter.file.starts_with("theory/")).collect()
+}
+
+#[test]
+fn equations_are_numbered_by_chapter() {
+    let mut known = BTreeSet::new();
+    for (number, chapter) in theory().iter().enumerate() {
+        for tag in tags(&chapter.text) {
+            let prefix = format!("{}.", number + 1);
+            assert!(tag.starts_with(&prefix), "{} is chapter {}: \\tag{{{tag}}}", chapter.file, number + 1);
+            assert!(known.insert(tag.clone()), "{}: a second \\tag{{{tag}}}", chapter.file);
+        }
+    }
+    for chapter in chapters().unwrap().iter().filter(|chapter| !chapter.file.starts_with("theory/")) {
+        assert!(tags(&chapter.text).is_empty(), "{}: only the theory manual numbers equations", chapter.file);
+    }
+}
+
+#[test]
+fn every_cited_equation_exists() {
+    let known: BTreeSet<String> = theory().iter().flat_map(|chapter| tags(&chapter.text)).collect();
+    let mut files = files_below(&repository(), "rs");
+    files.extend(files_below(&repository(), "md"));
+    // The example numbers of the crate that reads them.
+    files.retain(|path| !path.starts_with(source()) || path.extension().is_some_and(|extension| extension == "md"));
+    let mut wrong = Vec::new();
+    for path in files {
+        let text = fs::read_to_string(&path).unwrap();
+        let unknown = cited_equations(&text).into_iter().filter(|number| !known.contains(number));
+        wrong.extend(unknown.map(|number| format!("{}: (T{number})", path.display())));
+    }
+    assert!(wrong.is_empty(), "equations that the theory manual does not have:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn mathematics_is_complete() {
+    for chapter in chapters().unwrap() {
+        for paragraph in paragraphs_without_code(&chapter.text) {
+            let dollars = paragraph.replace("\\$", "").matches('$').count();
+            assert!(dollars % 2 == 0, "{}: an odd number of $ in: {paragraph}", chapter.file);
+            for (number, formula) in paragraph.split('$').enumerate() {
+                // Every second piece is within dollars; `$$` leaves an empty piece on each side.
+                assert!(number % 2 == 0 || braces_match(formula), "{}: braces in: {formula}", chapter.file);
+            }
+        }
+    }
+}
+
+/// The paragraphs of a text without fenced blocks and without code in lines; `$$` as `$`.
+fn paragraphs_without_code(text: &str) -> Vec<String> {
+    let mut paragraphs = vec![String::new()];
+    let mut is_display = false;
+    for line in prose(text).lines() {
+        is_display ^= line.trim() == "$$";
+        let outside = line.split('`').step_by(2).collect::<Vec<_>>().join(" ");
+        match paragraphs.last_mut() {
+            Some(paragraph) if is_display || !line.trim().is_empty() => {
+                paragraph.push_str(&outside.replace("$$", "$"));
+                paragraph.push('\n');
+            }
+            _ => paragraphs.push(String::new()),
+        }
+    }
+    paragraphs
+}
+
+/// Whether every brace and every `\begin` of a formula is closed.
+fn braces_match(formula: &str) -> bool {
+    let plain = formula.replace("\\{", "").replace("\\}", "");
+    let environments = formula.matches("\\begin{").count() == formula.matches("\\end{").count();
+    plain.matches('{').count() == plain.matches('}').count() && environments
 }
