@@ -1,4 +1,4 @@
-//! Finds PETSc (pkg-config name `PETSc`) and generates the bindings of the functions used.
+//! Finds PETSc (pkg-config name `PETSc`) and generates bindings of the functions that the crate uses.
 
 use std::{env, path::PathBuf, process::exit};
 

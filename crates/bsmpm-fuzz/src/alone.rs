@@ -1,4 +1,4 @@
-//! A scene on one rank without MPI and PETSc.
+//! Runs a case on one rank without MPI and PETSc.
 
 use crate::solver::Skyline;
 use bsmpm::background::Resisted;

@@ -1,4 +1,4 @@
-//! The parser of case files: bytes and overrides give a case or errors, and what it accepts holds together.
+//! Fuzzes the parser of case files.
 
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm_scene::{Case, Error, Estimate, Geometry, seed};

@@ -1,4 +1,4 @@
-//! Numbers drawn from the fuzzer's bytes: sizes that people write, and now and then any bits there are.
+//! Draws numbers from the fuzzer's bytes.
 
 use arbitrary::{Result, Unstructured};
 

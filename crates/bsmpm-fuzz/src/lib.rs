@@ -1,8 +1,7 @@
-//! Fuzz targets: what may come from outside, or from the fuzzer's choice of numbers, never panics, never yields what is
-//! not finite, and keeps the promises of the crate that it goes to.
+//! Fuzz targets: arbitrary input must not cause a panic or a number that is not finite.
 //!
-//! A target is a plain function of bytes. `tests/replay/main.rs` runs all of them on stable Rust, on the committed
-//! corpora and on some thousand mutations; `scripts/fuzz` runs them under libFuzzer.
+//! A target is a function of bytes. `tests/replay/main.rs` runs all targets on the committed corpora; `scripts/fuzz`
+//! runs them under libFuzzer.
 #![forbid(unsafe_code)]
 // As in `bsmpm`: N, dN and F are what the paper calls so.
 #![allow(non_snake_case)]

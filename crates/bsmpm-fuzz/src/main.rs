@@ -1,5 +1,4 @@
-//! The targets as a program. Built plainly it replays files: `bsmpm-fuzz TARGET FILE...`. Built as `scripts/fuzz` does,
-//! with libFuzzer, it is the fuzzer of the target that `BSMPM_FUZZ_TARGET` names.
+//! Runs a target: `bsmpm-fuzz TARGET FILE...`. `scripts/fuzz` builds it with libFuzzer.
 #![cfg_attr(fuzzing, no_main)]
 
 #[cfg(fuzzing)]

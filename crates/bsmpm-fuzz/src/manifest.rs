@@ -1,4 +1,4 @@
-//! `run.json`: any file is a manifest or an error, and a manifest that was read says the same when it is written again.
+//! Fuzzes the reader of `run.json`.
 
 use bsmpm_io::manifest::{MANIFEST, Manifest};
 use std::fs;

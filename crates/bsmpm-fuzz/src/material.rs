@@ -1,5 +1,4 @@
-//! The return mapping (section 2.2): any trial state and any parameters that a case may have give a finite response or
-//! a typed error, on or inside the yield surface, that a second return leaves alone.
+//! Fuzzes return mappings (T4.1) to (T4.3): the stress must lie within the yield surface.
 
 use crate::draw;
 use arbitrary::{Result, Unstructured};

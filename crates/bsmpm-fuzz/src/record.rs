@@ -1,5 +1,4 @@
-//! The record of a checkpoint: a folder with any record and any file is searched, and nothing is taken for a checkpoint
-//! but what its record describes.
+//! Fuzzes records of checkpoints.
 
 use arbitrary::{Result, Unstructured};
 use bsmpm_io::checkpoint::{ArrayNumber, CheckpointRecord, FoundCheckpoint, RecordedArray, SCHEMA, named, newest};

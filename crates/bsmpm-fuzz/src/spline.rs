@@ -1,4 +1,4 @@
-//! B-splines on any knots that are admitted, anywhere (Eqs 3-6).
+//! Fuzzes B-splines (T2.1) to (T2.3) on any valid knots.
 
 use crate::draw;
 use arbitrary::{Result, Unstructured};

@@ -1,4 +1,4 @@
-//! Steps of any valid tiny case: each ends with finite points in the grid, or with a typed error and nothing changed.
+//! Fuzzes steps of small valid cases.
 
 mod scene;
 

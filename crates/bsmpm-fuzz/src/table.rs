@@ -1,4 +1,4 @@
-//! Tables of numbers, and the piecewise linear motions that rows of them describe.
+//! Fuzzes tables of numbers, and piecewise linear motions.
 
 use bsmpm::boundary::Path;
 use bsmpm::tensor::Vector;

@@ -1,4 +1,4 @@
-//! Replacing a file so that whoever reads it, at any moment, finds the old or the new one whole.
+//! Replaces a file such that readers find the old or the new one.
 
 use std::ffi::OsString;
 use std::fs::{self, File};

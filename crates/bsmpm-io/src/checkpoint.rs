@@ -1,10 +1,5 @@
-//! Checkpoints: one HDF5 file each, and beside it a record that makes it count.
-//!
-//! `checkpoint/step_000001234.h5` holds the arrays, `step_000001234.json` the [`CheckpointRecord`]: size and BLAKE3 of
-//! the file, its arrays, what it belongs to. Without a valid record there is no checkpoint. A checkpoint is written
-//! under temporary names and comes into being with the last rename ([`Store::commit`]); what is good is never renamed
-//! or written to again. The hash finds every accident; it does not protect from someone who rewrites the record as
-//! well.
+//! Checkpoints: an HDF5 file with the arrays, and a record ([`CheckpointRecord`]) with its size and hash. A checkpoint
+//! is valid after [`Store::commit`].
 
 mod find;
 mod record;

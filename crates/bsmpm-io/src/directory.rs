@@ -1,4 +1,4 @@
-//! The output directory: one run each. Nothing in it is deleted but what an older `run.json` names, on request.
+//! The output directory of a run. Only files named in its `run.json` are ever deleted.
 
 use std::fs::{self, Metadata};
 use std::io::{self, ErrorKind};

@@ -1,4 +1,4 @@
-//! Bytes: what the file system of a directory has left, and numbers of them as people write them.
+//! Free disk space, and sizes as text.
 
 use std::io;
 use std::path::Path;

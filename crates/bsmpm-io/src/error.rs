@@ -1,4 +1,4 @@
-//! What can go wrong when a run's files are written or read, with the exit code that each error means.
+//! Errors of files, with their exit codes.
 
 use crate::exit;
 use std::io;

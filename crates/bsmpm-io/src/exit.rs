@@ -1,4 +1,4 @@
-//! What the programs end with: the one list of codes, and what they mean.
+//! Exit codes of the programs.
 #![doc = include_str!("exit.md")]
 
 /// The case's end was reached, and all its checks passed.

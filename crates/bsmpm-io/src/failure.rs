@@ -1,4 +1,4 @@
-//! `failure.json`: why a run could not go on, for whoever has to find out.
+//! `failure.json`: why a run could not continue.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The state of all points at one moment, as it is written for pictures; it knows no file format.
+//! A frame: all material points at one time.
 
 use std::path::Path;
 

@@ -1,7 +1,4 @@
-//! The frames of a run: `frames/step_*.vtu`, and `frames.pvd`, which gives each its time and is what ParaView opens.
-//!
-//! A run fills a frame's file, and a thread sees to it that the disk has it and gives it its name: a frame needs six
-//! calls that wait for the disk, some 30 ms, in which the run goes on. Frames that were filled meanwhile share them.
+//! Writes frames (`frames/step_*.vtu`) and their list (`frames.pvd`), on a separate thread.
 
 use std::fs;
 use std::io::Write;

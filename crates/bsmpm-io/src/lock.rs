@@ -1,8 +1,4 @@
-//! `.lock`: the file by which a run holds its output directory against all others, and how that of a dead run is taken
-//! over.
-//!
-//! It is created exclusively and names its holder. A dead holder's file is replaced under a second exclusive file, and
-//! read again there: of many that find it one succeeds, and the directory is never without a lock meanwhile.
+//! `.lock`: reserves an output directory for one process. The lock of a dead process is replaced.
 
 mod holder;
 

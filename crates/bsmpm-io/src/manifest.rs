@@ -1,5 +1,4 @@
-//! `run.json`, the manifest: what was run, by which program, how it went, and what it left. It is replaced whole, so
-//! that a reader finds a good one at any moment.
+//! `run.json`, the manifest: case, program, course and output of a run.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Names of files that an output directory's own files hold: none of them may lead out of the directory.
+//! Checks that file names stay within the output directory.
 
 use std::path::{Component, Path};
 

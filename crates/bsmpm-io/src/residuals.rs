@@ -1,5 +1,4 @@
-//! `residuals.csv`: how far from equilibrium every iteration of every accepted step was. Kept where the case asks for
-//! it.
+//! `residuals.csv`: convergence measures of each iteration.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! `steps.csv`: how hard each accepted step was.
+//! `steps.csv`: cost of each accepted step.
 
 use crate::table::{Cell, TableColumn};
 

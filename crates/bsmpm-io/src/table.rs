@@ -1,5 +1,4 @@
-//! Tables with one row a step, as comma-separated values: a line of names, a line of units that begins with `#`, then
-//! the rows. Each row is in the file before the next step begins.
+//! CSV tables with one row per step. The second line has the units.
 
 use std::fs::{self, File};
 use std::io::{Read, Seek, SeekFrom, Write};

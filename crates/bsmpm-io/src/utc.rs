@@ -1,4 +1,4 @@
-//! Coordinated universal time as text, for the manifest.
+//! Coordinated universal time as text.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 

@@ -1,5 +1,4 @@
-//! One frame as a VTK unstructured grid: a vertex cell per point, raw appended binary, little endian, file version 1.0
-//! (every ParaView since 4 opens it). [`read`] reads back what [`write()`] wrote, not every `.vtu` of the world.
+//! Writes a frame as a VTK unstructured grid.
 
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;

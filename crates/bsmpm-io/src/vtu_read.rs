@@ -1,4 +1,4 @@
-//! Reads the frames that [`crate::vtu`] wrote. Every length is checked against the file's own before it is believed.
+//! Reads frames that [`crate::vtu`] wrote.
 
 use std::fs;
 use std::path::Path;

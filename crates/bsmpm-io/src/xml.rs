@@ -1,4 +1,4 @@
-//! The little of XML that our own `.vtu` and `.pvd` files use: tags with quoted attributes, no entities, no comments.
+//! Reads the XML of `.vtu` and `.pvd` files.
 
 /// One tag, with the text that follows it up to the next one.
 pub(crate) struct Tag<'a> {

@@ -1,4 +1,4 @@
-//! The codes of messages, and the page of the catalogue that explains each.
+//! The codes of messages, and their catalogue.
 #![doc = include_str!("../README.md")]
 
 mod code;

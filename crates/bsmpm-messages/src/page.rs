@@ -1,4 +1,4 @@
-//! The catalogue: one page for each code, in Markdown files by area.
+//! The message catalogue: a page for each code.
 
 use std::fmt::Write;
 use std::sync::LazyLock;

@@ -1,4 +1,4 @@
-//! The catalogue is complete, and the texts in the sources follow the pattern of a message.
+//! Tests that the catalogue is complete, and that messages follow their pattern.
 
 use bsmpm_messages::{Kind, Page, code_of, pages, without_code};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,7 +1,4 @@
-//! Prints what a checkpoint holds, for the tests of restarts: `arrays FILE`
-//!
-//! A line of name and BLAKE3 for each array, and one for everything else of the run's state but what it says of the
-//! files, whose manifest reports times. Checkpoints of one state print the same.
+//! Prints hashes of the arrays and the other state of a checkpoint: `arrays FILE`.
 
 use bsmpm::points::Points;
 use bsmpm_par::checkpoint::{CheckpointState, Opened, Refusal, Wanted, find};

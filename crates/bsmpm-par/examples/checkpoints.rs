@@ -1,8 +1,8 @@
-//! Writes and reads checkpoints of made-up points, for the tests of checkpoints: `checkpoints TASK ...`
+//! Writes and reads checkpoints of synthetic material points: `checkpoints TASK ...`
 //!
-//! - `write DIRECTORY POINTS STEP [PHASE]`: one checkpoint; rank 0 is aborted in that phase (`Opened`, ...).
-//! - `storm DIRECTORY POINTS`: checkpoints of steps 1, 2, ... until it is killed.
-//! - `newest FOLDER POINTS`, `named FILE POINTS`: reads one, and checks every number of it.
+//! - `write DIRECTORY POINTS STEP [PHASE]` writes a checkpoint; rank 0 aborts in that phase.
+//! - `storm DIRECTORY POINTS` writes checkpoints until it is killed.
+//! - `newest FOLDER POINTS` and `named FILE POINTS` read and check one.
 
 use bsmpm::points::{Points, Seed};
 use bsmpm::tensor::{Symmetric, Tensor, Vector};

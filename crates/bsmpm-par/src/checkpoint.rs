@@ -1,6 +1,4 @@
-//! Checkpoints on all ranks: the columns of the points and the nodal displacement of the last step, a slice of rows
-//! each, and a text of everything that is the same everywhere, the [`CheckpointState`]. What makes a file a checkpoint
-//! is `bsmpm_io::checkpoint`'s part.
+//! Checkpoints on all ranks: arrays in slices of rows, and the common [`CheckpointState`].
 
 mod read;
 mod refusal;

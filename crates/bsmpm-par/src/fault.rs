@@ -1,7 +1,8 @@
-//! Faults on demand, in every build, so that what is tested is what is shipped: `BSMPM_FAULT=panic:rank=R,step=N`
-//! panics on rank R when step N begins; `BSMPM_FAULT=kill:phase=P,step=N` kills the rank that writes the checkpoint of
-//! step N in its phase P (opened, midway, ...); `BSMPM_FAULT=reject:step=N` gives step N up when it has converged, and
-//! makes it again.
+//! Injects faults for tests by `BSMPM_FAULT`:
+//!
+//! - `panic:rank=R,step=N` panics on rank R in step N;
+//! - `kill:phase=P,step=N` kills the rank that writes the checkpoint of step N, in phase P;
+//! - `reject:step=N` repeats the converged step N.
 
 use bsmpm_io::checkpoint::Phase;
 

@@ -1,5 +1,4 @@
-//! Frames: all points by ascending id, so that a frame does not depend on the number of ranks, block by block on rank
-//! 0, so that no rank holds more of them than its own and a block.
+//! Gathers the material points of a frame on rank 0, in the order of their ids.
 
 use bsmpm::material::{Material, Variable};
 use bsmpm::observe::invariants;

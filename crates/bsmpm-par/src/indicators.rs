@@ -1,7 +1,4 @@
-//! Cheap measures of how far a run can be trusted, taken once at its end: what they are, and which values are usual.
-//!
-//! The ranges are those of the shipped cases, coarse and fine, with methods that are known to be good.
-#![doc = include_str!("indicators.md")]
+//! Computes indicators of the reliability of a run, at its end: (T10.4), (T10.5), (T10.9) and (T10.13) to (T10.16).
 
 mod force_noise;
 mod limits;

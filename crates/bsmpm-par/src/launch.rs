@@ -1,4 +1,4 @@
-//! Start and end of the program: what it says, and how a failure on one rank ends all of them.
+//! Starts and ends the program on all ranks.
 
 use crate::terminal::{self, Terminal};
 use bsmpm_io::exit::{BUG, WRONG_LAUNCH};

@@ -1,4 +1,4 @@
-//! Files of a run, written by rank 0: manifest, histories, steps, frames, and which checkpoints there are.
+//! Writes the files of a run on rank 0.
 
 mod first;
 mod restart;

@@ -1,5 +1,4 @@
-//! The limit loads of a case with `[analysis] purpose = "limit-load"`: found in its history at the end of the run, with
-//! what is known of their error.
+//! Limit loads at the end of a limit load analysis.
 
 use bsmpm_io::manifest::ManifestLimitLoad;
 use bsmpm_io::table::Columns;
@@ -12,7 +11,7 @@ const REACHED: f64 = 0.01;
 /// Cells across the width for which errors are stated; they are inversely proportional to the number of cells.
 const STATED_CELLS: f64 = 16.0;
 /// Least and largest error of verified limit loads with so many cells, of both methods; they are too high
-/// (`cases/results/limit_load.md`).
+/// (verification manual, `scripts/limit-loads`).
 const ERRORS_OF_AVERAGES: [f64; 2] = [0.01, 0.05];
 const ERRORS_WITHOUT_AVERAGES: [f64; 2] = [0.02, 0.26];
 

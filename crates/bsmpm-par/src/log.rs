@@ -1,7 +1,4 @@
-//! The log of rank 0 on stderr: warnings, how far the run is, and on request a line for every step.
-//!
-//! Where a person watches, one line shows the progress and is overwritten. Elsewhere, as in a batch job, a line follows
-//! every two minutes. A log of JSON has every event, and no line of progress.
+//! The log of rank 0 on stderr, at a terminal, in a batch job or as JSON.
 
 use crate::cli::{Arguments, LogFormat, ProgressForm};
 use crate::launch;

@@ -1,4 +1,4 @@
-//! What the operating system reports of this process and its libraries (Linux; nothing elsewhere).
+//! Data of the operating system about this process (Linux only).
 
 use std::fs;
 

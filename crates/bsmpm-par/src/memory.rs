@@ -1,5 +1,4 @@
-//! Whether a case fits into memory: its estimate against what the command line or this host allows, before anything is
-//! allocated. Linux reports; elsewhere only the command line does.
+//! Compares the memory estimate of a case with `--max-memory` and the host.
 
 use crate::cli::Arguments;
 use crate::launch::{complain, say};

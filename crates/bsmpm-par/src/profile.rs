@@ -1,4 +1,4 @@
-//! Rows of profiles: fields at places along a line, in the case's own coordinates.
+//! Computes profiles: fields along a line.
 
 use crate::gather;
 use bsmpm::kinematics::Kinematics;

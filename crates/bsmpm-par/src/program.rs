@@ -1,4 +1,4 @@
-//! From the command line to a run that is ready: every way to be refused before anything is written.
+//! Prepares a run. Nothing is written before all checks have passed.
 
 mod begin;
 

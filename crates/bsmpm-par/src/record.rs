@@ -1,4 +1,4 @@
-//! Rows of `history.csv`: the quantities that the case asks for, in the case's own coordinates.
+//! Computes rows of `history.csv`.
 
 mod place;
 mod reported;

@@ -1,4 +1,4 @@
-//! Whether a run begins or goes on, and from what.
+//! Decides whether a run begins or continues, and from which checkpoint.
 
 mod there;
 

@@ -1,4 +1,4 @@
-//! A run: step after step, what is written after each, and the ways in which it ends.
+//! The loop of a run: steps, output and end.
 
 mod diagnosis;
 mod end;

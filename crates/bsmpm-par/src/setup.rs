@@ -1,5 +1,4 @@
-//! What a run needs of its case beside the model: the first cut, the linear solver, what is reported of it in the
-//! manifest.
+//! Sets up grid division, initial stress and linear solver.
 
 use bsmpm::error::StepError;
 use bsmpm::initial::{Equilibrium, Settling};

@@ -1,4 +1,4 @@
-//! The case file: read by rank 0, parsed by every rank from the same bytes.
+//! Reads the case file on rank 0; each rank parses it.
 
 use crate::cli::Arguments;
 use crate::launch::say;

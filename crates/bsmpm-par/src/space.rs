@@ -1,5 +1,4 @@
-//! Whether the disk has room for the checkpoints and frames that a run is about to write. Its tables are small beside
-//! them; quotas are not seen.
+//! Compares the free disk space with the expected output.
 
 use crate::checkpoint::{self, Contents, Refusal, agree};
 use crate::cli::Arguments;

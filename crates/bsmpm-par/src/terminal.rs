@@ -1,7 +1,4 @@
-//! The terminal at which a person watches a run: that of this process, or that of the launcher to which a pipe leads.
-//!
-//! `mpirun` reads what its ranks print through pipes. Its own stderr says whether somebody watches (Linux; elsewhere a
-//! run under a launcher counts as unwatched).
+//! Finds the terminal of this process or of `mpirun` (Linux only).
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{IsTerminal, stderr};

@@ -1,5 +1,4 @@
-//! Messages of many lengths between all ranks, for the test of their exchange: `exchange BLOCK`, with blocks of so many
-//! bytes. Every rank looks at every byte that it gets.
+//! Exchanges and checks messages of many lengths between all ranks: `exchange BLOCK`, with blocks of BLOCK bytes.
 
 use bsmpm_ranks::traffic::Traffic;
 use bsmpm_ranks::{launch, migrate};

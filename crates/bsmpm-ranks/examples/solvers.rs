@@ -1,6 +1,4 @@
-//! Measures linear solvers on the elastic stiffness of a square in plane strain, fully populated, its base and left
-//! side on rollers: CPU seconds of the slowest rank, as the table in this crate's README has them.
-//!
+//! Measures linear solvers on the stiffness of an elastic square:
 //! `mpirun -n 2 solvers direct|mumps|redundant|gamg NU CELLS [PETSc options]`
 
 use bsmpm::grid::{Grid, KnotVector};

@@ -1,9 +1,5 @@
-//! The exchange of nodal contributions: one message to and from every rank that shares nodes, corners included.
-//!
-//! Ranks exchange what single columns of cells contribute to the layers that they share, and add it in the order of the
-//! columns, so that sums have the same bits on any number of slabs: q (q+1)/2 layers a neighbour in place of q. Of a
-//! column that is cut into parts each rank has its own sum; all that see a node add those of its ranks in the ranks'
-//! order, so that they have the same bits, which depend on the parts.
+//! Exchanges nodal contributions between ranks with common nodes. They are added by columns of cells, so that sums have
+//! the same bits on any number of slabs.
 
 use crate::signals::{Requests, WIDTH};
 use crate::slab::{NodeBox, SharedLayer, Slabs, common};

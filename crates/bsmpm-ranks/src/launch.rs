@@ -1,4 +1,4 @@
-//! Start and end of the ranks: what MPI needs before it starts, and how a failure on one rank ends all of them.
+//! Starts MPI, and ends all ranks after a failure on one.
 
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;

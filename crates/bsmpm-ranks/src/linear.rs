@@ -1,5 +1,4 @@
-//! The linear system: assembly, with numbers of the unknowns where PETSc holds the matrix, and KSP, which solves it. Of
-//! its solutions are checked those of PETSc's preconditioners all, of the program's own factor the first one.
+//! Assembles linear systems, solves them by PETSc's KSP, and checks residuals.
 
 mod choice;
 mod coupled;

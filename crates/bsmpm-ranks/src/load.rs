@@ -1,8 +1,4 @@
-//! What the work of a rank is measured by: counts, never a clock, so that a run repeats.
-//!
-//! Two fits to runs of many sizes on one rank (`scripts/scaling`) say that a node of the window costs 0.95 and 1.07 of
-//! what a point does in an evaluation, everything included. A point that yields cost 4 % more in an earlier fit, and an
-//! occupied cell nothing that its points did not, so neither counts.
+//! Load of a rank (T12.1). It is counted and not timed, so that a run can be repeated.
 
 use crate::slab::Slabs;
 use bsmpm::grid::Grid;

@@ -1,5 +1,4 @@
-//! Points and nodal values that change their rank: after every step, and when the grid is cut again.
-//! [`plan`](crate::plan) says who gets what.
+//! Moves material points and nodal values between ranks, by a [`plan`](crate::plan).
 
 use crate::plan::{NodePlan, PointPlan};
 use crate::slab::{NodeBox, Slabs};

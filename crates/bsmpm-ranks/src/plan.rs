@@ -1,4 +1,4 @@
-//! Who gets what when points leave their rank's cells and when the grid is cut again: plain data, without MPI.
+//! Plans which material points and nodal values move to which rank.
 
 use crate::slab::{NodeBox, Slabs, common};
 use std::ops::Range;

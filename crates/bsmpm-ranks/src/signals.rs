@@ -1,8 +1,7 @@
-//! What signals ask of a run, agreed by all ranks: one to a single rank is enough, and no extra message is sent.
+//! Handles signals on all ranks.
 //!
-//! USR1, TERM and INT: stop at the last converged state; a second TERM or INT: end at once. USR2: write a frame and a
-//! checkpoint, go on. The handlers only set flags; [`MpiHalo`](crate::halo::MpiHalo) adds those to every sum over the
-//! ranks.
+//! USR1, TERM and INT stop the run at the last converged state; a second TERM or INT ends it at once. USR2 writes a
+//! frame and a checkpoint.
 
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
 use signal_hook::flag;

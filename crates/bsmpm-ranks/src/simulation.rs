@@ -1,4 +1,4 @@
-//! A scene on the ranks: steps, migration, and the cut of the grid that follows the points.
+//! The state of a run on its ranks: steps, migration and load balance.
 
 use crate::halo::MpiHalo;
 use crate::linear::{Choice, Solvers, Tallies};

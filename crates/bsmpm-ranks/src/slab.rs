@@ -1,10 +1,7 @@
-//! The cut of the grid into slabs of columns along its first axis, and of these into parts along the second one: plain
-//! data, known to every rank, without MPI.
+//! Divides the grid into slabs along the first axis, and slabs into parts along the second.
 //!
-//! A rank owns the cells of its columns and the node layers that begin in them; the last rank owns the q layers at the
-//! far end too. Its window reaches q ghost layers further, into the slab (or, of thin slabs, the slabs) behind. So it
-//! is with the rows of cells where slabs have parts: every slab has its own bounds there, and as many parts as all
-//! others.
+//! A rank owns its columns of cells and the node layers that begin in them. It also stores the q layers beyond (q:
+//! degree), which are ghost nodes except on the last rank.
 
 use std::ops::Range;
 

@@ -1,9 +1,5 @@
-//! The stiffness of one window as node stencils, and its entries as PETSc wants them: plain data, without MPI or PETSc.
-//!
-//! A node couples with the (2q+1)^D nodes around it, and with those a layer further where the window reaches beyond its
-//! cells. Blocks of patches are summed into that fixed stencil, so that every
-//! rank hands each of its coordinates over once; rows of ghost nodes are completed by their owner, in whatever order,
-//! or by columns of cells in the order of these.
+//! The stiffness matrix of a rank as node stencils: each node couples with the (2q+1)^D nodes around it (degree q, D
+//! axes), or with more by F-bar averages.
 
 mod places;
 

@@ -1,4 +1,4 @@
-//! Wall-clock seconds by phase, and counts of communication: what `run.json` reports of where a run's time went.
+//! Wall-clock time by phase, for `run.json`.
 
 use crate::traffic::Traffic;
 use std::cell::RefCell;

@@ -1,6 +1,4 @@
-//! What this rank sends the others, by kind: counts, which tell how a run would scale where a clock cannot.
-//!
-//! What PETSc reports by itself is not among them.
+//! Counts messages and bytes of this rank.
 
 use std::cell::Cell;
 

@@ -1,4 +1,4 @@
-//! A valid case: all numbers in SI and within their ranges, angles in radians.
+//! The validated case, in SI units and radians.
 
 mod element;
 mod flow;
@@ -389,7 +389,7 @@ impl NarrowestOpening {
     }
 
     /// Cells across that are enough, by the points along an axis of a cell: the RMS error is 6.5 % with 6 cells and 3
-    /// points, 8.3 % with 8 cells and 2 points (`crates/bsmpm-scene/src/preset.md`).
+    /// points, 8.3 % with 8 cells and 2 points (trial `enough_cells_across_a_hole_find_the_stress_at_its_edge`).
     pub(crate) fn enough(points_per_cell: usize) -> f64 {
         if points_per_cell >= 3 { 6.0 } else { 8.0 }
     }

@@ -1,5 +1,4 @@
-//! Which bodies are connected: layers and slices that share a face are one piece of material, which has a thickness and
-//! may rotate as one.
+//! Groups bodies that share a face into connected pieces.
 
 use crate::case::Case;
 

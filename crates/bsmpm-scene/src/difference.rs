@@ -1,4 +1,4 @@
-//! What differs between two cases, for a run that goes on with what another one has left.
+//! Compares two cases key by key, for a restart.
 
 use crate::document;
 use crate::earlier;

@@ -1,4 +1,4 @@
-//! The case as written: a tree of values, each with the place where it stands.
+//! The parsed case file: values with their positions in the text.
 
 use crate::error::Origin;
 use crate::report::{Report, shortened};

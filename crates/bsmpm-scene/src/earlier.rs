@@ -1,5 +1,4 @@
-//! Names of earlier versions. Keys and words that were renamed are still read: the document gets the names of now, and
-//! the report one note for each earlier name.
+//! Replaces outdated names of keys and options, with a note for each.
 
 use crate::document::{DocumentTable, Node, Value};
 use crate::key_path::join;

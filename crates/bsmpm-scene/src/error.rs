@@ -1,5 +1,4 @@
-//! One thing that is wrong with a case, reported so that its author finds it and knows what to write; and one that the
-//! program chose by itself.
+//! Errors of a case, and values that the program chose.
 
 use crate::words::RemovedWord;
 use bsmpm_messages::{code_of, without_code};

@@ -1,6 +1,4 @@
-//! Sizes of a case before anything is allocated.
-//!
-//! The bytes are counted from what the program holds and rounded to what runs took; `tests/shipped.rs` compares.
+//! Estimates the size and memory of a case, with coefficients fitted to runs.
 
 use crate::case::{Body, Case, Linear, Nonlinear};
 use crate::grid::GridSpec;
@@ -65,7 +63,7 @@ const PROCESS: u128 = 52_000_000;
 
 /// Poisson's ratio up to which the stiffness that secants correct is without F-bar's coupling in space.
 const LOCAL: f64 = 0.45;
-/// The same of material that yields at rest: what flows is nearly incompressible (`cases/results/solid.md`).
+/// The same of material that yields at rest: what flows is nearly incompressible.
 const LOCAL_AT_REST: f64 = 0.4;
 
 /// Unknowns of a rank below which it mostly waits for others, in two dimensions.

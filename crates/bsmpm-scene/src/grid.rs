@@ -1,7 +1,4 @@
-//! The grid of a case, cells described but not stored where they are equal.
-//!
-//! The cells here are those that have a length. The knot vectors of the physics count the spans between knots, among
-//! them those without length between the copies of a repeated breakpoint.
+//! The grid of a case. Its cells have a positive length, unlike some knot spans of `bsmpm`.
 
 use bsmpm::tensor::Vector;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Paths of keys, as `--set` takes them: `body.0.box.upper`.
+//! Joins keys to paths such as `body.0.box.upper`.
 
 /// Path of a key of the table at `path`, which is empty for the file itself.
 pub(crate) fn join(path: &str, key: &str) -> String {

@@ -1,13 +1,9 @@
 #![doc = include_str!("../README.md")]
-//! ## The way of a case
+//! ## Guarantees
 //!
-//! What to solve: a TOML case file, read strictly, becomes a valid [`Case`] in SI units and its material points.
-//!
-//! Bytes ([`load`]) -> the document as written, with every value's place -> overrides
-//! (`--set KEY=VALUE`) -> what a preset stands for -> the document held against the [`schema`]: names, types, units,
-//! ranges -> the rules between keys -> [`Case`]. Nothing is used differently from how it was written.
-//! This crate knows no MPI, writes nothing and allocates nothing in proportion to a number that a case gives, but for a
-//! bounded count per column of cells of a body that is no box.
+//! [`load`] reads the bytes of a case file. [`Case::from_bytes`] turns them into a valid [`Case`], or reports all
+//! errors. The crate does not use MPI and writes no files. Reading a case needs little memory, whatever numbers it
+//! contains.
 #![forbid(unsafe_code)]
 
 #[macro_use]

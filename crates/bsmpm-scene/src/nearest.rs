@@ -1,4 +1,4 @@
-//! The nearest known name to a mistyped one.
+//! Finds the known name nearest to a misspelt one.
 
 use crate::report::shortened;
 

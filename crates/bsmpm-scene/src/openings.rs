@@ -1,11 +1,7 @@
-//! Holes and notches of bodies: where their surface faces itself across an opening. Stress concentrates there, so that
-//! the number of cells across an opening says how far its peak can be trusted.
+//! Finds holes and notches of bodies, for presets and the indicator `cells-across-opening`.
 //!
-//! From places on the surface of a body a ray runs along the normal into the open. If it comes to a wall of the same
-//! body that faces back, the distance is the width of the opening there. Where the surface is curved, rays that are
-//! inclined to the normal are tried, too: those along the normals of a semicircular notch leave it. Pits with walls
-//! that slope at 60 degrees or less, cut off sides and excavations of one wall have none. What another body or a rigid
-//! body fills is no opening. Rollers that a body reaches are planes of symmetry, in which the body is mirrored.
+//! A ray starts at the surface of a body along the outward normal. It crosses an opening if it meets an opposite wall
+//! of the same body. Walls with a slope of 60 degrees or less and filled openings do not count.
 
 mod plane;
 mod search;

@@ -1,4 +1,4 @@
-//! `--set KEY=VALUE`: one value of the document replaced before anything is validated.
+//! Applies `--set KEY=VALUE` to the document before validation.
 
 use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
 use crate::error::Origin;

@@ -1,4 +1,4 @@
-//! How many ranks a case can have, and in how many parts along y the slabs of columns are cut for them.
+//! The largest number of ranks for a case, and the division of the grid into parts.
 
 use crate::case::Case;
 use crate::words::Support;

@@ -1,8 +1,5 @@
-//! `accuracy = "draft" | "standard" | "reference"`: what a case leaves out of its discretisation is filled in before it
-//! is held against the schema, so that all that follows sees ordinary keys, and any key given by hand wins.
-//!
-//! The presets are defined here and nowhere else.
-#![doc = include_str!("preset.md")]
+//! Presets: `accuracy` fills in missing values of cells (T11.1), steps (T11.2) and tolerances before the comparison
+//! with the schema.
 
 mod axis;
 mod cells;

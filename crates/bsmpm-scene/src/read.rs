@@ -1,4 +1,4 @@
-//! From the text of a case file to the case.
+//! Reads a case: parsing, overrides, presets, validation.
 
 use crate::case::Case;
 use crate::error::{Error, Origin};

@@ -1,4 +1,4 @@
-//! The document held against the schema: every value typed, in SI and within its range, or an error.
+//! Compares the document with the schema. A record has typed values in SI units (angles in degrees).
 
 mod access;
 mod value;

@@ -1,4 +1,4 @@
-//! What a body fills: a rectangle, or any shape of straight edges and arcs with others cut out of it.
+//! The region that a body fills. In a plane it is bounded by straight edges and arcs.
 
 mod cells;
 mod edge;

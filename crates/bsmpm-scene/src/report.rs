@@ -1,4 +1,4 @@
-//! Collects what is wrong, doubtful or chosen while a case is read, each thing once and in the file's order.
+//! Collects errors, warnings and chosen values in the order of the file.
 
 use crate::error::{Choice, Error, Origin, Place};
 use crate::key_path::join;

@@ -1,5 +1,4 @@
-//! Bodies to material points: a regular lattice in the part of every cell that a box covers, or in the cells themselves
-//! where another shape cuts them.
+//! Fills the cells of a body with a regular lattice of material points.
 
 use crate::case::{Body, Case};
 use crate::grid::GridSpec;

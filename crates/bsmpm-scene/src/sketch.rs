@@ -1,5 +1,4 @@
-//! What the text of a case reports without all of it being valid: a text of another version of the program, or none,
-//! leaves gaps, and no errors.
+//! Extracts basic data from the text of a possibly invalid case.
 
 use crate::case::Support;
 use crate::record::{self, Record};

@@ -1,6 +1,4 @@
-//! Slips that leave no doubt what is meant: a misspelt key, one pair of brackets for two. Each is an error; the
-//! document then gets what is meant, so that the rest of the case is read as if it were right, and nothing else is
-//! reported that only follows from the slip.
+//! Reports slips, such as misspelt keys, and corrects them to avoid consequential errors.
 
 use crate::document::{DocumentEntry, DocumentTable, Node, Value};
 use crate::key_path::join;

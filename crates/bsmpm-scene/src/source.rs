@@ -1,4 +1,4 @@
-//! The text of a case file: read with a bound, decoded with reasons, and its lines and columns.
+//! The text of a case file: reading, decoding, lines and columns.
 
 mod rows;
 mod stl;

@@ -1,9 +1,7 @@
-//! The frequency below which most of the energy of an input lies.
+//! Finds the frequency below which 95 % of the energy of an input lies.
 //!
-//! The energy is that of the velocity, as a plane wave carries `ρ c v²` per area and time: a force per area p makes the
-//! velocity `p/(ρ c)`, a prescribed motion its own, and an acceleration of the ground its integral. The velocity is
-//! sampled over the whole run and continued by its mirror image, so that its end adds no jump, and its discrete Fourier
-//! transform is summed from the lowest frequency on. Its mean makes no wave and does not count.
+//! The energy of a plane wave is proportional to the square of its velocity. The energies of the Fourier components of
+//! the velocity are summed from the lowest frequency upwards, without the mean.
 
 use realfft::RealFftPlanner;
 

@@ -1,4 +1,4 @@
-//! Strips, rigid bodies and loads of a case as the physics wants them, and the footing's gauges.
+//! Converts footings, rigid bodies, loads and drains to types of `bsmpm`.
 
 mod strips;
 pub(crate) mod transition;

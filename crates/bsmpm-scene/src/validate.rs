@@ -1,4 +1,4 @@
-//! The rules between keys: a record whose values fit one by one becomes a valid case, or errors.
+//! Checks the rules between keys, and makes the valid case.
 
 mod approach;
 mod axisymmetric;

@@ -1,6 +1,4 @@
-//! Inputs that are given by a record or a table, and the waves that they send into the bodies.
-//!
-//! They are read from the record of a case, so that presets know them before there is a grid.
+//! Finds time-dependent inputs of a case that cause waves.
 
 use crate::record::{ListRow, Record};
 use crate::region;
@@ -13,7 +11,7 @@ const FORCES: [&str; 4] = ["amplitude", "stress_path", "pressure_path", "force_p
 const LOADED: [&str; 2] = ["traction", "point_load"];
 
 /// Cells a wavelength at which the speed of a wave is wrong by 2 %, by splines of order 1 to 3. Rounded up from a bar
-/// with two and three points along each axis of a cell and 100 steps a period: the table of `cases/results/waves.md`.
+/// with two and three points along each axis of a cell and 100 steps a period (trials of `waves`).
 const LUMPED: [f64; 3] = [18.0, 24.0, 28.0];
 const CONSISTENT: [f64; 3] = [9.0, 8.0, 8.0];
 

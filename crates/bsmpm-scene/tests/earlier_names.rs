@@ -1,4 +1,4 @@
-//! Names of earlier versions: they are read as those of now, with one note each; both together are refused.
+//! Tests outdated names of keys.
 
 use bsmpm_scene::schema::{Kind, ROOT, Table};
 use bsmpm_scene::{Case, differences};

@@ -1,4 +1,4 @@
-//! When frames are wanted.
+//! Tests the times of frames and steps.
 
 use bsmpm_scene::Case;
 use bsmpm_scene::model::{frame_times, schedule};

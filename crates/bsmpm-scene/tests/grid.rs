@@ -1,4 +1,4 @@
-//! Places of a case from the grid's lower corner.
+//! Tests positions in the grid, and the default degree.
 
 use bsmpm_scene::{Case, GridAxis, GridSpec};
 

@@ -1,4 +1,4 @@
-//! `[analysis] purpose = "limit-load"`: what it chooses, refuses and warns of.
+//! Tests cases of limit load analyses.
 
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_scene::{Case, Error, Quantity};

@@ -1,4 +1,4 @@
-//! C0 lines: where a case gets them, why, and what cannot have one.
+//! Tests where C0 lines are placed.
 
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm_scene::{Case, Line, model};

@@ -1,5 +1,4 @@
-//! Holes, notches and re-entrant corners: what is found, how many cells are across it, and which cells a preset makes
-//! there.
+//! Tests detection and refinement of holes, notches and re-entrant corners.
 
 use bsmpm_scene::{Case, NarrowestOpening};
 

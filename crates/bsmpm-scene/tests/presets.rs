@@ -1,4 +1,4 @@
-//! `accuracy`: what it fills in, from which parts of a scene, and that everything given by hand wins.
+//! Tests the values that `accuracy` chooses.
 
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::stabilisation::Stabilisation;

@@ -1,4 +1,4 @@
-//! Points of bodies: areas add up, ids are unique, and a range of columns gives the same points as the whole.
+//! Tests material points of boxes.
 
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm_scene::{Body, Case, Seed, seed};

@@ -1,4 +1,4 @@
-//! Polygons, circles and what is cut out of them: areas add up, points lie inside, and none depends on the columns.
+//! Tests polygons, circles and cut-outs.
 
 use bsmpm::kinematics::{PlaneStrain, Solid};
 use bsmpm_scene::{Body, Case, Error, Region, Seed, seed};

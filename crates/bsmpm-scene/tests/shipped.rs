@@ -1,4 +1,4 @@
-//! Every case that the project ships is valid, and the paper's column has the sizes that it should.
+//! Tests the cases in `cases/`, and their memory estimates.
 
 use bsmpm_scene::{Base, Case, Counted, GridAxis, Quantity, load};
 use std::path::{Path, PathBuf};

@@ -1,6 +1,4 @@
-//! Writes runs that never were, to look at the pictures that `bsmpm plot` makes of them:
-//! `cargo run --example synthetic_run DIRECTORY` makes `DIRECTORY/long`, `tall`, `wide` and `coarse`, and the
-//! quasi-static `slope`, `footing`, `footing-locked` and `slope-coarse`.
+//! Writes synthetic runs for `bsmpm plot`: `cargo run --example synthetic_run DIRECTORY`.
 
 #[path = "../tests/plot/collapse.rs"]
 mod collapse;

@@ -1,6 +1,4 @@
-//! Many runs of one case with different settings, side by side: each is validated in `order` before anything runs,
-//! begun when there is room in `pool`, and made by `crate::launch`. Runs that have ended are kept, those that were
-//! stopped go on, and one that fails does not end the others.
+//! Makes many runs of one case with different settings, in parallel. Complete runs are reused.
 
 use std::fs;
 use std::path::{Path, PathBuf};

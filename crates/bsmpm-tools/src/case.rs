@@ -1,4 +1,4 @@
-//! The case file of a command.
+//! Reads the case file of a command.
 
 use std::collections::BTreeSet;
 use std::io::ErrorKind;

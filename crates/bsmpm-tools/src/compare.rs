@@ -1,5 +1,4 @@
-//! `bsmpm compare`: one quantity of several runs in one picture, and as a table. What the runs give is in `runs`,
-//! points to compare with in `crate::reference`, the table in `table`; how a step of theirs converged, in `residuals`.
+//! `bsmpm compare`: one quantity of several runs, as picture and table.
 
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,4 @@
-//! `bsmpm element`: what a material does in a laboratory test. The tests are tables of the case, `[element.NAME]`, so
-//! that their words, units and errors are those of the language, and parameters stay beside what they were fitted to.
-//! The point is driven by [`bsmpm::element`]; it is followed in `course` and drawn in `picture`.
+//! `bsmpm element`: laboratory tests of one material point, by [`bsmpm::element`].
 
 use std::fs;
 use std::io::Write;

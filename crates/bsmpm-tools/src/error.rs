@@ -1,4 +1,4 @@
-//! What can go wrong in a command, with the exit code that it means.
+//! Errors of commands, with their exit codes.
 
 use bsmpm_io::exit;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,5 @@
-//! `bsmpm estimate`: what a case will cost. Sizes follow from the case (`sizes`); what a unit of work costs, from the
-//! case's first steps; how much work there is, from coarse forms of it over all its time (`probe`, `coarse`, `growth`),
-//! for iterations change as material yields; a case that takes no longer than probes may is run whole. Without probes
-//! both come from what runs took elsewhere (`stored`), scaled by how fast this machine is (`kernel`). The result is set
-//! in `report`, beside a finished run in `against`.
-#![doc = include_str!("estimate.md")]
+//! `bsmpm estimate`: predicts the cost of a run (T11.3), from trial runs of its first steps and of coarser versions, or
+//! from stored coefficients.
 
 use std::path::PathBuf;
 use std::thread;

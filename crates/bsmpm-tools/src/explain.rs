@@ -1,4 +1,4 @@
-//! `bsmpm explain`: the pages of the catalogue of messages.
+//! `bsmpm explain`: pages of the message catalogue.
 
 use std::fmt::Write;
 

@@ -1,6 +1,4 @@
-//! What three grids say of a fourth, infinitely fine one: observed order, Richardson's extrapolation and the grid
-//! convergence index (Roache, 1994) by the procedure of Celik et al. (2008), J. Fluids Eng. 130, 078001. It knows no
-//! runs.
+//! Observed order, Richardson extrapolation (T11.4) and grid convergence index (T11.5) of three grids.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! Runs of bsmpm-par as other commands start them: made now, or left as they are where nothing has changed since.
+//! Starts `bsmpm-par`, or reuses an unchanged run.
 
 use std::env;
 use std::fs::{self, File};

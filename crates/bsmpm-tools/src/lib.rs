@@ -1,7 +1,4 @@
 #![doc = include_str!("../README.md")]
-//! ## The modules
-//!
-//! Each command is a module with its arguments and one function that carries it out; [`cli`] lists them.
 #![forbid(unsafe_code)]
 
 mod batch;

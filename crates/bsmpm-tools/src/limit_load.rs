@@ -1,5 +1,4 @@
-//! `bsmpm limit-load`: the load under which the ground fails at what is moved, on the case's own grid and on finer
-//! ones, with Richardson's extrapolation. Runs are made by `crate::batch`, results are set in `report`.
+//! `bsmpm limit-load`: limit loads on several grids, and their extrapolation (T9.9).
 
 use std::path::PathBuf;
 

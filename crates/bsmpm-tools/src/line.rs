@@ -1,4 +1,4 @@
-//! Straight lines through parts of curves, and which part of a curve of displacements is its branch after failure.
+//! Fits straight lines to displacement curves before and after failure.
 
 /// The branch after failure: from this many times the elastic displacement ..
 pub(crate) const BENT: f64 = 5.0;

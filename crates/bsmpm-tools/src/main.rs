@@ -1,4 +1,4 @@
-//! The companion program `bsmpm`; what it does is in the library of the same crate.
+//! The program `bsmpm`.
 #![forbid(unsafe_code)]
 
 use std::io::Write;

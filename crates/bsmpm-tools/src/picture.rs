@@ -1,5 +1,4 @@
-//! What pictures are made of: a sheet of paper (`canvas`), axes (`layout`, `axes`, `ticks`), a legend (`legend`),
-//! colours (`colour`, `bar`), a body of points (`splat`) and curves (`chart`). It knows no run.
+//! Elements of pictures, such as canvas, axes and legend.
 
 pub(crate) mod axes;
 pub(crate) mod bar;

@@ -1,5 +1,4 @@
-//! `bsmpm plot`: the pictures of a run, each in a module; which ones there are depends on what the case records and on
-//! whether inertia acts. The files of the run are read in `crate::record`.
+//! `bsmpm plot`: draws the pictures of a run.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What a run left, as the pictures need it.
+//! Reads the results of a run for pictures.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

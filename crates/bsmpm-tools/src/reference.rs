@@ -1,4 +1,4 @@
-//! Points to compare with, from the literature, a laboratory or another program.
+//! Reads reference points from the literature, a laboratory or another program.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What commands tell: tables for the screen, as Markdown and as CSV, and the files that hold them.
+//! Tables for the screen, as Markdown and as CSV.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

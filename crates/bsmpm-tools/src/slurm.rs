@@ -1,5 +1,4 @@
-//! `bsmpm slurm`: a job script for a case. What stops in time goes back into the queue and on from its checkpoint; a
-//! run that ended for another reason does not.
+//! `bsmpm slurm`: writes a job script that requeues an unfinished run.
 
 use std::ffi::OsStr;
 use std::fs::File;

@@ -1,7 +1,4 @@
-//! `bsmpm sweep`: what accuracy costs on a case. What was asked for is looked through in `plan`: settings are made in
-//! `axes` and become runs in `study`, which `crate::batch` makes, or searches of a factor of safety in `safety`.
-//! Numbers are taken from them in `quantity`, held against a `reference`, and weighed against their cost in `front`;
-//! `report` and `picture` tell, `write` writes a setting back as a case file.
+//! `bsmpm sweep`: error (T11.6) against cost for many settings.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

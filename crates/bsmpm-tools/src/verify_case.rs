@@ -1,5 +1,4 @@
-//! `bsmpm verify-case`: how far a case is from the limit of ever smaller cells. Three grids are made in `grids` and run
-//! by `crate::batch`, what they say of each quantity is found in `crate::grid_convergence` and reported in `report`.
+//! `bsmpm verify-case`: grid convergence of a case on three grids.
 
 use std::path::PathBuf;
 

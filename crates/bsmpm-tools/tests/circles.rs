@@ -1,8 +1,4 @@
-//! No circles of files: within a crate, imports lead from no file over others back to it. What a module has from its
-//! own ancestors or descendants does not count: a parent may re-export its child, a child may use what is above it.
-//!
-//! Sources are read, not compiled: what macros make is not seen. A path ends at its first segment that is no module,
-//! and what a module only re-exports belongs to the file that defines it.
+//! Tests that files of a crate do not import each other in a circle.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

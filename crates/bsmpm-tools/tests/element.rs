@@ -1,4 +1,4 @@
-//! `bsmpm element` on the example case and on what cannot be followed.
+//! Tests `bsmpm element`.
 
 use std::fs;
 use std::path::{Path, PathBuf};

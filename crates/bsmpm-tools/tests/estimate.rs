@@ -1,4 +1,4 @@
-//! `bsmpm estimate`, with a stub for the solver: this test program, which writes runs whose cost follows a known law.
+//! Tests `bsmpm estimate` with a stub solver of known cost.
 
 use std::env;
 use std::fs;

@@ -1,4 +1,4 @@
-//! `bsmpm slurm`: the script that is written, run with a Slurm that is not there.
+//! Tests `bsmpm slurm` without Slurm.
 
 use std::ffi::{OsStr, OsString};
 use std::os::unix::ffi::{OsStrExt, OsStringExt};

@@ -1,6 +1,4 @@
-//! Bounds of what scenes of `cases/` carry: `cargo run --release -p bsmpm-trials --example bounds`, a quarter of an
-//! hour. Of blocks, by the spacing of the nodes between which they may slide, from above; of bodies that go down, by
-//! the cells at their edge, from below and above. `cases/results/scenes.md` and `axisymmetric.md` have what it prints.
+//! Computes bounds of limit loads for cases in `cases/`.
 
 #[path = "../tests/support/bounds.rs"]
 mod bounds;

@@ -1,21 +1,5 @@
-//! A soft elastic background, for cells in which nodes hold next to no material.
-//!
-//! A point that enters an empty cell gives its farthest node a stiffness that vanishes faster than its force. The
-//! background ties such nodes to their neighbours; it acts on the step's increment u only, in residual and stiffness
-//! alike, linear in u. So it never accumulates stress, however far a body moves or turns in many steps: it is a drag,
-//! weaker in smaller steps. It is no part of the paper.
-//!
-//! Where a prescribed motion goes on with its velocity, and extended splines tie the functions of nearly empty cells,
-//! it resists u - w only, w = u_last dt/dt_last ([`Resisted::Change`]). Steady flow then meets no drag, and a limit
-//! load does not depend on the coefficient. This is a step of the proximal point method around the first guess
-//! (Rockafellar, 1976, SIAM J. Control Optim. 14, 877-898). In the first step of such a motion, where its velocity
-//! changes, and under loads it resists all of u: functions without stiffness of their own would else go on with what
-//! they had.
-//!
-//! In every occupied cell its energy is 1/2 c E int eps : eps dV, where c is the coefficient, E the largest modulus in
-//! the cell and eps the symmetric gradient of the step's displacement: it resists every deformation, and no small
-//! rotation; in axisymmetry it resists deformations in the plane. It needs neither a wider matrix nor more exchange. It
-//! slows down what fails: a slope far beyond its strength comes to rest in coarse steps, on half of its way.
+//! Soft elastic background in all occupied cells (T2.13), for splines that see almost no material. It is part of the
+//! residual and the stiffness, and resists the displacement of one step or, in steady motion, its change (T2.14).
 
 mod form;
 mod integrals;

@@ -1,5 +1,7 @@
-//! What holds and loads the bodies: supports at the faces of the grid, rigid strips, tractions and point loads.
-#![doc = include_str!("boundary.md")]
+//! Boundaries and loads: supports, footings, loads, absorbing faces, contact and rigid bodies. They prescribe nodal
+//! displacements, or add forces to the residual.
+//!
+//! `(T6.1)` is equation (6.1) of the theory manual, `crates/bsmpm-book/src/theory/boundaries.md`.
 
 pub mod absorbing;
 pub mod anchor;

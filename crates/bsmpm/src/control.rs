@@ -1,7 +1,5 @@
-//! When a step fails: it is halved and later grown back, and none is accepted that has not converged.
-//!
-//! A nominal step is divided into 1024 ticks; attempts are powers of two of them, on the binary subdivision of the
-//! nominal step, so that the step's end is always met and a cut step is a refinement, not another path.
+//! Step size control: failed steps are halved, and doubled again after two easy steps. Attempts are powers of two of
+//! 1/1024 of the nominal step, so its end is reached exactly.
 
 use crate::background::Resisted;
 use crate::energy::{Budget, Stored};

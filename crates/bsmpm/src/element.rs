@@ -1,9 +1,8 @@
-//! One material point driven along a path of strains and stresses: a laboratory test of what a law's parameters mean.
+//! Element test (`bsmpm element`): one material point follows a path of strains and stresses, without inertia and
+//! F-bar.
 //!
-//! Lines along x stay along x, `F = [[a, γ b, 0], [0, b, 0], [0, 0, c]]`, and the path is reported in the logarithms of
-//! a, b and c and in γ. Each of the four components is given, or follows from a Cauchy stress that is; without drainage
-//! the volume stays and what the stress lacks is pore pressure. It is the constitution of the solver, point for point,
-//! and knows no grid: no inertia, no F-bar.
+//! The deformation gradient is `F = [[a, γ b, 0], [0, b, 0], [0, 0, c]]`. For each of ln a, ln b, ln c and γ, the value
+//! or the Cauchy stress is given. Undrained tests have constant volume.
 
 use crate::initial;
 use crate::material::{Branch, Material, MaterialError, Response, Separation};

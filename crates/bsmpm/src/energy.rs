@@ -1,47 +1,5 @@
-//! Energy bookkeeping: what a step takes in, stores, dissipates and loses, each measured by itself, so that what is
-//! left over says whether the books are right.
-//!
-//! Over any number of steps, with T and E the kinetic and elastic energy of the points,
-//!
-//! `external = ΔT + ΔE + plastic + transfer + integration + smoothing + background + penalty + closure`.
-//!
-//! In a step from t (0) to t + dt (1) with the nodal displacement u, M the mass matrix, lumped or consistent, v_I and
-//! a_I the nodes' motion:
-//!
-//! - **external**: `Σ_p m_p (g0 + g1)/2 · Δu_p` of gravity, `Σ A (q0 + q1)/2 · Δx` of tractions and point loads,
-//!   `Σ A (p0 + p1)/2 · motion` of rigid strips, `r1 · u` of supports of the grid that move, and of friction at faces
-//!   and strips, and the blow `v · M (v - v_p)` with which supports meet material that the points bring along with
-//!   v_p. Of water that flows, what drives it beside its excess pressure p, and what drains and inflows let through,
-//!   `- dt Σ_p V0 J w · drive - Σ p out`, `½ Δm v²` of the mass that points take in, and what lifts it from still water
-//!   into suction. The mean force of a step: its
-//!   work is exact for dead loads and of second order in dt else.
-//! - **plastic**: `Σ_p V0 τ : (ε_trial - εᵉ)`, backward Euler like the return, and what damping takes, `Σ_p V0 τ_v : e`
-//!   (see [`damping`](crate::step::damping)).
-//!   Where water flows also what its seepage takes, `- dt Σ_p V0 J w · (grad p + drive)`, w Darcy's flux.
-//! - **transfer** between points and nodes: `(T0 - ½ v_I0 · M v_I0) + (½ v_I1 · M v_I1 - T1)` and what the blow did,
-//!   what PIC/FLIP loses on the way there and back; it can be negative, as the points' velocity grows by the
-//!   accelerations that they keep for themselves,
-//!   the nodes' by the mapped ones.
-//! - **integration**: `(Σ_p w τ : (∇u dF⁻¹) - ΔE' - plastic) + (M ã · u - Δ(½ v_I · M v_I)) - ½ (f1 - f0) · u`: the
-//!   work of the internal forces less what became of it, the work of the inertia less the nodes' kinetic energy, and
-//!   the difference between the forces at the end, which are in balance, and the mean ones, by which external work is
-//!   counted (gravity, loads, strips). w is V0, or the weight that the
-//!   [`quadrature`](crate::quadrature) gives to the point: energies are those of the points' own volumes, so that a
-//!   state has one energy, and what the weights work otherwise is counted here. ΔE' is the change of E before the
-//!   smoothing, ã the acceleration that the mass resists with. With
-//!   Newmark's 1/4, 1/2 `M (a0 + a1)/2 · u` is exactly the nodes' change: elastic and without remapping, this part is
-//!   of second order in dt. Numerical damping, F-bar, backward Euler, and the difference between the forces at t on the
-//!   new grid and the mapped `M a0` appear here; in quasi-static analysis also what a load that is applied at once does
-//!   more than the body stores.
-//! - **smoothing**: E before less E after bᵉ is changed once the step has converged.
-//! - **background**: `u · B u`; the background forgets it after every step.
-//! - **penalty**: `Σ A (p0 + p1)/2 · (motion - u)`, by which material slips from strips, but for what friction takes of
-//!   it.
-//!
-//! **closure** is then the work of what is out of balance, `f_oob · u`, that of the iteration's tolerance, and
-//! round-off. Supports that do not move, and strips at rest, do no work. In J (plane strain: per metre).
-//!
-//! Every dynamic run keeps the part of the books that costs nothing, see [`Budget`].
+//! Energy balance of a run, in J or, in plane strain, J per metre (T10.1) to (T10.3). [`Draft`] computes the terms of a
+//! step independently, so that the residual `closure` is a check. [`Budget`] is the energy bound of dynamic runs.
 
 mod budget;
 

@@ -1,4 +1,4 @@
-//! What can go wrong in the physics; every variant names the point, node or number concerned.
+//! Errors of the numerical method, with the material point, node or number that caused them.
 
 use crate::material::MaterialError;
 use crate::method::Criteria;

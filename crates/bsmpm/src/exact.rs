@@ -1,8 +1,5 @@
-//! Sums of floats without rounding: the same bits in whatever order, by however many ranks and threads they are formed.
-//!
-//! A number is a whole multiple of 2^-1074. Its significand is cut at multiples of 32 bits and added to whole numbers
-//! of 64 bits (a long accumulator: Kulisch and Miranker, 1986; small superaccumulator: Neal, 2015), which ranks add up
-//! one by one. Nothing is rounded before [`Exact::value`].
+//! Exact sums of floating-point numbers, bitwise identical in any order: a long accumulator of 64-bit integers (Kulisch
+//! and Miranker, 1986; Neal, 2015).
 
 use std::ops::{AddAssign, SubAssign};
 

@@ -1,5 +1,5 @@
-//! The free field beside the ground: columns of soil that shake for themselves and drive the sides.
-#![doc = include_str!("free_field.md")]
+//! Free-field boundaries: a soil column, advanced before each step on every rank, drives the nodes of a side (T6.14),
+//! (T6.15).
 
 mod tied;
 

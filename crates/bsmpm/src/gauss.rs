@@ -1,4 +1,4 @@
-//! Numerical integration along a line.
+//! Gauss-Legendre quadrature with four points.
 
 /// Places and weights of the Gauss-Legendre rule of four points on [-1, 1]: exact for products of two cubics.
 pub const GAUSS: [(f64, f64); 4] = [

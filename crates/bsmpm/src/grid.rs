@@ -1,6 +1,5 @@
-//! The parametric grid and its tensor-product nodes (section 2.1), seen through the window of one rank.
-//!
-//! Positions are relative to the grid's lower corner: at 1e6 m an increment of 1e-9 m would lose 5 % of itself.
+//! Grid of cells with tensor-product B-splines. A rank stores a part of it, the window. Positions are relative to the
+//! grid's lower corner, to avoid round-off.
 
 pub mod contributions;
 pub mod extension;

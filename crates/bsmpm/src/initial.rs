@@ -1,5 +1,4 @@
-//! Stress at the start (a geostatic state), on the geometry as it is given: nothing has moved, displacements count from
-//! there. The elastic strain that belongs to the stress is put into b^e; F stays the identity.
+//! Initial stress on the drawn geometry (T9.1), (T9.2), and exchange of laws by stages.
 
 mod settle;
 

@@ -1,6 +1,5 @@
-//! The only place where plane strain, axisymmetry and three dimensions differ: the numbers that a node's function has
-//! in a gradient (G), how they become tensors and back (G, G^T), F-bar's exponent, what a piece of the grid weighs, and
-//! where points begin in a cell.
+//! Plane strain, axisymmetry and three dimensions: gradients, tensors, the exponent of F-bar (T3.2) and volume factors.
+//! Geometries differ in this module only.
 
 mod axisymmetric;
 mod plane_strain;

@@ -1,13 +1,5 @@
-//! Eight points at a time, with whatever vectors the machine has: SSE2, AVX2 or AVX-512, chosen at run time.
-//!
-//! There are eight lanes on every machine, and no operation has another result in a wider register: the bits are the
-//! same. What runs in lanes is inlined into one function for each instruction set; what says `#[inline(always)]` is
-//! there for sure, and a call that remains costs time but no digit.
-//!
-//! No product is fused with a sum. With all fused that can be (`RUSTFLAGS="-C llvm-args=--fp-contract=fast"`: 3,931
-//! fused instructions for 154) column and footing take 0.96 to 1.00 and 1.00 to 1.02 of the CPU seconds in mid-flow
-//! (steps 400 to 415 and 80 to 86, three pairs each) and as many evaluations: memory is the limit, and a rule for FMA
-//! would gain nothing.
+//! SIMD evaluation of eight points at a time with SSE2, AVX2 or AVX-512. Results are bitwise identical, because the
+//! width is always eight and multiply-add is not fused.
 
 use crate::real::Real;
 pub use fearless_simd::Simd;

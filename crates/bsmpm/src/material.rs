@@ -1,8 +1,8 @@
-//! Constitution (section 2.2): a trial elastic left Cauchy-Green tensor in, Kirchhoff stress and elastic state out.
+//! Constitutive laws (chapter 4 of the theory manual): from trial elastic state (T3.3) to Kirchhoff stress and new
+//! elastic state.
 //!
-//! Every law is isotropic and works on principal Hencky strains, ε = ½ ln bᵉ (Eq. 9), so the small-strain return of
-//! de Souza Neto et al. (2008) holds at large strain (Eq. 10). Stress is in Pa, tension positive, principal values
-//! descending. Nothing here knows F, J or the grid, nor stores a state: old state in, new state out.
+//! All laws are isotropic and use principal Hencky strains (T4.1). Stresses are in Pa, tension positive, in descending
+//! order. Laws store no state.
 
 mod cam_clay;
 mod drucker_prager;

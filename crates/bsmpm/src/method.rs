@@ -1,4 +1,4 @@
-//! How equilibrium is sought, and when it is found: the words of the nonlinear solution (steps 3, 7 to 9).
+//! Methods and convergence criteria of the nonlinear solution (chapter 5 of the theory manual).
 
 /// How equilibrium is sought.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

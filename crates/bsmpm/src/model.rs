@@ -1,4 +1,4 @@
-//! What stays constant in a run: grid, materials, loads, supports and the measures of convergence.
+//! Data that are constant during a run: grid, materials, loads, supports and convergence criteria.
 
 use crate::background::Background;
 use crate::boundary::Boundary;

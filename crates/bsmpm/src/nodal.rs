@@ -1,4 +1,4 @@
-//! Where the numbers of nodes stand in one array: node by node, `C` of each (displacements, a pressure).
+//! Layout of nodal arrays: node by node, `C` numbers per node.
 
 use std::ops::Range;
 

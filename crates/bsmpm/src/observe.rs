@@ -1,5 +1,5 @@
-//! What a history records: numbers of the whole body, the same on every rank.
-#![doc = include_str!("observe.md")]
+//! Quantities of histories and profiles (T10.6) to (T10.12): sums, means and maxima, values at positions, front, stress
+//! scatter and section forces.
 
 mod front;
 pub mod interfaces;

@@ -1,6 +1,4 @@
-//! The two seams of the physics: what other ranks know, and the linear system. Called a few times per iteration.
-//!
-//! Nodal arrays are flat: `width` numbers per local node of the window, node after node.
+//! Interfaces to other ranks ([`Halo`]) and to the linear solver ([`LinearSolver`]).
 
 use crate::error::SolveError;
 use crate::exact::Exact;

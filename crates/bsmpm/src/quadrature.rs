@@ -1,20 +1,5 @@
-//! What a point weighs in the integrals of the stress: its own volume, or one that integrates splines better.
-//!
-//! Points that have moved against each other and the cells fill these by too much or too little: a bar on two points a
-//! cell and axis that its weight compresses to half its height has a mean error of its stress of 0.6 % on 64 cells and
-//! on 256. `Fitted` multiplies the volumes V = V0 det F of the start of the step with factors 1 + sum_h c_h A_h(x_p), A
-//! the splines of degree q - 1, such that those that lie inside the body are integrated exactly: sum_p w_p A_h(x_p) =
-//! int A_h dV. Gradients of the splines of degree q are differences of these, so that a constant stress then is in
-//! equilibrium (along an axis; and nearly in a plane). It is the least change in the sense of sum_p (w_p - V_p)^2 /
-//! V_p: moment fitting, as of quadratures of cut cells (Müller, Kummer and Oberlack, 2013, Int. J. Numer. Meth. Engng
-//! 96, 512-528), to functions that reach over several cells. Evenly spaced points integrate them exactly wherever the
-//! cells lie, and are left alone; and with quadratic splines factors do not jump as points pass from cell to cell. (Of
-//! linear splines the A are the constants of the cells; cubic ones were tried and find no equilibrium in that bar with
-//! 3 points.) Fitted to constant and linear functions in every cell by itself, weights do both: with two points the
-//! error falls to 0.24 %, but in a bar that is compressed by 1 % it grows from 0.03 to 2 %.
-//!
-//! Nothing is carried from step to step. These are weights of the stress only, mass stays with the points. At the edge
-//! of a body nothing says how much of a cell is filled: functions that reach there change nothing.
+//! Weights of the points in stress integrals, computed at the start of a step: volumes, or fitted weights, which
+//! integrate splines of degree q - 1 inside a body exactly (T2.9).
 
 use crate::boundary::Boundary;
 use crate::grid::occupied::Occupied;
@@ -33,8 +18,7 @@ pub enum Quadrature {
     Fitted,
 }
 
-/// Passes of the iteration: 0.001 of what is missing is left (10: 0.02, which then is the bar's error on 256 cells;
-/// with 5, 10 and 20 that is 1.1e-3, 1.3e-4 and 0.6e-4 for 6.2e-3 without).
+/// Passes of the iteration: 0.001 of what is missing is left. With 10 it is 0.02, which dominates the error in fine grids.
 const PASSES: usize = 16;
 /// Least and largest factor of a volume: a function that few points see might ask for others.
 const FACTORS: [f64; 2] = [0.1, 10.0];

@@ -1,8 +1,5 @@
-//! Numbers that a formula works on: those of one point, or of eight points at a time (lanes).
-//!
-//! A formula that is written for [`Real`] serves both with the same operations in the same order, so that a point has
-//! the same bits wherever it is computed. It chooses by masks where points differ; [`Real::any`] saves a part that no
-//! point takes, and of one point is its branch. There is no fused multiplication: not every machine has one.
+//! Number type of formulas that evaluate one point, or eight at a time (SIMD lanes), with bitwise identical results.
+//! Masks replace branches; [`Real::any`] skips operations that no lane needs.
 
 use nalgebra::Scalar;
 use std::fmt::Debug;

@@ -1,5 +1,4 @@
-//! Where the nominal steps end: multiples of dt from the last wanted time, or steps that grow, and every wanted time
-//! exactly; and what is given by rows at times, so that a cut step follows the same course.
+//! Ends of the nominal steps, including every output time, and interpolation of tables in time.
 
 use std::ops::{Add, Mul, Sub};
 

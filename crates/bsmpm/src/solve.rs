@@ -1,5 +1,4 @@
-//! Steps (3), (7)-(9): how equilibrium is sought: from which guess, by which method, and what comes after a failure.
-#![doc = include_str!("solve.md")]
+//! Search for equilibrium of one step (chapter 5 of the theory manual).
 
 pub mod bordered;
 pub mod broyden;
@@ -49,7 +48,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     let by_newton = (flows && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
     let mut found = search(problem, method, last, (solver, counts));
     // Of water Newton's method before another guess: of the steps that secants do not do from the first one it does
-    // more, and what neither does costs the same (`water.md`).
+    // more, and what neither does costs the same (`decisions.md` of the manual).
     if let Some(last) = by_newton.filter(|_| goes_on(&found)) {
         found = search(problem, Nonlinear::Newton, last, (solver, counts));
     }

@@ -1,19 +1,9 @@
-//! How volumetric locking and stress oscillation are treated (section 2.3).
-//!
-//! Every method but `None` is an F-bar: dF-bar = (ratio)^(1/dof) dF, with a ratio_p = kept_p S(w dJ)_p / (w_p dJ_p)
-//! that replaces the point's own dilation by an average over the grid. S is the weighted map to the nodes and back,
-//! S(a)_p = sum_I N_Ip (1/m_I) sum_r N_Ir m_r a_r, with m the mass, or the volume where densities differ, or, of
-//! dilations where water flows, either times J; the methods differ in w, in what is kept, and in the functions of
-//! S.
-//!
-//! S runs over the points of one group of materials at a time, m_I too: materials whose stiffness differs dilate
-//! by different amounts under the same stress. One average over both gives the stiffer one the strain of the softer: in
-//! level ground with E 1:100 beside an interface 36 (consistent F-bar) and 66 times (F-bar) its horizontal stress.
-#![doc = include_str!("stabilisation.md")]
+//! Methods against volumetric locking and stress oscillation (chapter 3 of the theory manual). All except `None` are
+//! F-bar methods (T3.1) to (T3.3). Each group of materials is averaged separately ([`Groups`]).
 
 use std::ops::Range;
 
-/// The method of section 2.3 that a run uses.
+/// The method that a run uses; see the table of chapter 3 of the theory manual.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stabilisation {
     /// The plain B-spline method.
@@ -21,29 +11,18 @@ pub enum Stabilisation {
     None,
     /// dJ averaged over the grid every iteration: ratio = S(dJ)/dJ (Eqs 15-18).
     FBar,
-    /// The total J averaged: ratio = R(t+dt)/R(t) with R = S(J)/J, 1 at the start; the baseline of the paper.
-    ///
-    /// Our reading of Zhao, Jiang and Choo (2022), "Circumventing volumetric locking in explicit material point
-    /// methods: A simple, efficient, and general approach": F-bar = (S(J)/J)^(1/dof) F at both ends of a step.
+    /// The total J averaged: ratio = R(t+dt)/R(t) with R = S(J)/J, 1 at the start; the baseline of the paper, a reading
+    /// of Zhao, Jiang and Choo (2022).
     FBarZhao,
-    /// The paper's method: dJ averaged, and b^e averaged after every step, b^e <- S(b^e) (Eqs 15-20).
-    ///
-    /// One pass of Eq. 20 is diffusion along sqrt((q+1)/6) h whatever dt is: results belong to their number of steps.
+    /// The paper's method: dJ averaged, and b^e averaged after every step (T3.5). Results depend on the number of steps.
     ModifiedFBar,
-    /// ratio = S1(dJ)/dJ, S1 with the splines of degree q - 1, and a filter of the elastic dilation that acts with
-    /// plastic flow only: results converge in the step size.
-    ///
-    /// Twice S1 would leave 28 % less noise in flowing sand, but then
-    /// dilatant slopes find no equilibrium. After a converged step (`step::smooth`) b^e <- exp(2/3 theta (S(eps_v) -
-    /// eps_v)) b^e, eps_v = 1/2 ln det b^e, with theta from 0, no flow, to 1. Without flow it is an F-bar with S1 for
-    /// S, no more. In dilatant material its force is the adjoint of its stress, see `step::adjoint`.
+    /// ratio = S1(dJ)/dJ (T3.4), S1 with the splines of degree q - 1, and a filter of the elastic dilation (T3.7) that
+    /// acts with plastic flow only: results converge in the step size. In dilatant material its force is the adjoint
+    /// of its stress, see `step::adjoint`.
     ConsistentFBar,
     /// Consistent F-bar whose S1 has the splines of degree q - 1 on pairs of cells inside a body, and on the cells at
     /// its edges (sub-grid method of Bressan and Sangalli, 2013; see
     /// [`grid::shape::merged`](crate::grid::shape::merged)).
-    ///
-    /// The pressure of nearly incompressible elastic material converges with it. Its stiffness reaches further and
-    /// costs more.
     SubgridFBar,
 }
 

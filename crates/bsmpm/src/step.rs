@@ -1,4 +1,4 @@
-//! One load step, t -> t + dt: section 2.4 of the paper, numbered as there.
+//! One load or time step from t to t + dt (chapter 1 of the theory manual). Step numbers are those of the paper.
 
 pub mod adjoint;
 pub mod apart;

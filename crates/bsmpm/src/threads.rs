@@ -1,5 +1,4 @@
-//! Work of a rank that its threads share. Whatever their number, results have the same bits: values come in the order
-//! of the points, sums are exact, and a largest value has no order.
+//! Parallel loops over points, with results that do not depend on the number of threads.
 
 use crate::exact::Exact;
 use rayon::Yield;

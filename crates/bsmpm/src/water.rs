@@ -1,9 +1,7 @@
-//! Water in the ground: its unit weight, the still water that is given, and, where it flows, what the soils and the
-//! drains are to it.
+//! Pore water: effective stress (T8.1), hydrostatic pressure, given pressures, coupled flow and suction. With coupled
+//! flow, excess pressures are additional unknowns.
 //!
-//! Stresses are effective ones. The pore pressure is p = p_a + p_e: p_a of the still water around (`ambient`), whose
-//! gradient acts as a force on the material, and the excess p_e, an unknown where water flows.
-#![doc = include_str!("water.md")]
+//! `(T8.1)` is equation (8.1) of the theory manual, `crates/bsmpm-book/src/theory/water.md`.
 
 pub mod ambient;
 pub mod backward;

@@ -1,4 +1,4 @@
-//! What needs the whole physics. One test program, as each would compile all of it again.
+//! Tests of the complete method, in one program to save compilation time.
 
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 

@@ -1,8 +1,9 @@
-//! Makes of a checkpoint's HDF5 file one that this project never writes, for the tests of what is refused:
+//! Changes an HDF5 file of a checkpoint into one that this project never writes. Tests use it to verify that invalid
+//! files are rejected.
 //!
-//! - `foreign KIND FILE ARRAY`: replaces an array of the file by something of that kind, see [`forge`];
-//! - `foreign set FILE ARRAY AT BITS`: one number of it, in the order of the file, by 64 bits in hexadecimal (its low
-//!   16 for arrays of 16 bits).
+//! - `foreign KIND FILE ARRAY` replaces an array of the file by one of the given kind, see [`forge`].
+//! - `foreign set FILE ARRAY AT BITS` sets the number at position AT to 64 bits in hexadecimal (16 bits for arrays of
+//!   16-bit numbers).
 
 use hdf5_sys::h5::hsize_t;
 use hdf5_sys::h5d::{H5D_layout_t, H5Dclose, H5Dcreate2, H5Dget_space, H5Dopen2, H5Dread, H5Dwrite};

@@ -1,4 +1,4 @@
-//! What can go wrong.
+//! Errors of reading and writing.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! HDF5's C functions behind handles that close themselves: the crate's unsafe code, all of it.
+//! HDF5's C functions behind handles that close themselves. All unsafe code of the crate is in this module.
 
 mod array;
 

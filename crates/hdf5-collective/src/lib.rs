@@ -1,11 +1,12 @@
-//! A small, safe binding of HDF5: checksummed arrays of numbers that all ranks write and read together, a slice of rows
-//! each. It knows nothing of what the numbers mean.
+//! A small, safe binding of HDF5 for arrays of numbers with checksums. All MPI ranks write and read a file together,
+//! and each rank handles a range of rows. The crate does not interpret the numbers.
 //!
-//! A file holds arrays `[rows, width]` in its root group and nothing else: hard links, little-endian numbers of fixed
-//! size, chunks of 16,384 rows with Fletcher's checksum, no compression, no time stamps, so that equal contents make
-//! equal bytes. [`Reader`] refuses whatever else a file may hold before it makes room for any of it.
+//! A file contains only arrays `[rows, width]` in its root group: hard links, little-endian numbers of fixed size,
+//! chunks of 16,384 rows with Fletcher's checksum. It has no compression and no time stamps, so equal contents give
+//! equal bytes. [`Reader`] rejects any other content before it allocates memory for it.
 //!
-//! Every function of [`Writer`] and [`Reader`] is collective, and so are their errors, but for [`Error::Torn`].
+//! All functions of [`Writer`] and [`Reader`] are collective. An error on one rank is an error on all ranks, except
+//! [`Error::Torn`].
 #![deny(unsafe_code)]
 
 mod error;

@@ -1,4 +1,4 @@
-//! The library itself, and the agreements between ranks.
+//! Initialisation of HDF5, and agreement of errors between ranks.
 
 use std::marker::PhantomData;
 

@@ -1,4 +1,4 @@
-//! Reading a file: equal slices of rows on any number of ranks.
+//! Reads a file on any number of ranks, each an equal range of the rows.
 
 use std::ops::Range;
 use std::path::Path;

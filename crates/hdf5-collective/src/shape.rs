@@ -1,4 +1,4 @@
-//! What an array is: numbers, rows, width.
+//! Shape of an array: type of number, rows and width.
 
 /// What a number of an array is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Writing a file.
+//! Writes a file.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! Errors: those of PETSc, caught by an error handler that stays silent, and those of the wrapper's
-//! own checks of lengths, ranges and narrowing.
+//! Errors of PETSc, which a silent error handler catches, and errors of this crate's checks of lengths, ranges and
+//! integer conversions.
 
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};

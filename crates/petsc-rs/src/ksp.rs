@@ -1,4 +1,4 @@
-//! Linear solvers: a Krylov method with its preconditioner, or a factorisation (method `preonly`).
+//! Linear solvers: a Krylov method with a preconditioner, or a factorisation (method `preonly`).
 
 mod shell;
 mod verdict;

@@ -1,10 +1,8 @@
-//! A small, safe binding of PETSc: distributed vectors, sparse matrices and Krylov or direct
-//! solvers, as owned handles whose errors are values.
+//! A small, safe binding of PETSc: distributed vectors, sparse matrices, and Krylov or direct solvers.
 //!
-//! PETSc neither prints nor aborts: its errors become [`Error`]. A call marked *collective* is made
-//! by every rank, in the same order, and when one rank's arguments are refused every rank gets an
-//! `Err` ([`Error::OtherRank`] where its own were good), so that no rank waits for another. A call
-//! not marked so is local.
+//! PETSc neither prints nor aborts: its errors are returned as [`Error`]. All ranks must make a call marked
+//! *collective*, in the same order. If the arguments of one rank are invalid, all ranks return an `Err` (ranks with
+//! valid arguments [`Error::OtherRank`]), so no rank waits for another. Other calls are local.
 //!
 //! ```no_run
 //! # fn main() -> petsc_rs::Result<()> {
@@ -25,8 +23,8 @@
 //! # }
 //! ```
 //!
-//! It needs a PETSc >= 3.18 of real, double scalars; indices may have 32 or 64 bits. A PETSc outside
-//! the loader's directories needs `LD_LIBRARY_PATH` at run time.
+//! The crate needs PETSc 3.18 or later with real scalars in double precision. Indices can have 32 or 64 bits. If PETSc
+//! is outside the loader's directories, set `LD_LIBRARY_PATH` at run time.
 
 mod error;
 mod ksp;

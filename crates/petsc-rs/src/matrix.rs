@@ -1,6 +1,6 @@
-//! Sparse square matrices: each rank owns contiguous rows, in the order of the ranks. The pattern is
-//! given once, as coordinates (COO) or as rows (CSR); the values may then be replaced any number of
-//! times. Sums of repeated coordinates are the same, bit by bit, on every run with as many ranks.
+//! Sparse square matrices, distributed by contiguous rows in the order of the ranks. The sparsity pattern is given
+//! once, as coordinates (COO) or rows (CSR); the values can be replaced any number of times. Sums of repeated
+//! coordinates are bitwise identical in every run on the same number of ranks.
 
 use std::ops::Range;
 use std::{ptr, slice};

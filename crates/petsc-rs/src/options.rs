@@ -1,4 +1,4 @@
-//! The options database: single entries, and those that nobody read.
+//! PETSc's options database: setting an option, and listing options that were not used.
 
 use std::ptr;
 

@@ -1,4 +1,4 @@
-//! The library itself: started after MPI and ended before it, and the agreements between ranks.
+//! Initialisation of PETSc after MPI, its end before MPI ends, and agreement of errors between ranks.
 
 use std::cell::Cell;
 use std::ffi::{CString, c_char, c_int};

@@ -1,7 +1,7 @@
-//! What PETSc reaches through callbacks: the product of a shell matrix, and a shell preconditioner of the caller's own.
+//! Callbacks from PETSc: the product of a shell matrix, and a user-defined preconditioner.
 //!
-//! A callback is lent for the time of one call of PETSc. What unwinds in it stops there, as no panic may pass through
-//! C: PETSc gets an error code, and the panic goes on when its call has returned.
+//! A callback is registered for the duration of one PETSc call. A panic in it must not pass through C code: PETSc
+//! receives an error code, and the panic resumes after the call returns.
 
 use std::any::Any;
 use std::cell::{Cell, RefCell};

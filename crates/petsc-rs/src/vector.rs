@@ -1,4 +1,4 @@
-//! Distributed vectors: each rank owns a contiguous part, in the order of the ranks.
+//! Distributed vectors. Each rank owns a contiguous part, in the order of the ranks.
 
 use std::ops::Range;
 use std::{ptr, slice};

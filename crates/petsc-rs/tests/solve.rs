@@ -1,5 +1,5 @@
-//! An MPI program that tests the binding on any number of ranks; every rank makes every check.
-//! `cargo test -p petsc-rs` runs it on one; under `mpirun -n N` run the built file itself.
+//! MPI test program of this crate for any number of ranks. Every rank executes all checks. `cargo test -p petsc-rs`
+//! runs it on one rank; for more, start the built program with `mpirun -n N`.
 
 mod support;
 

@@ -1,4 +1,4 @@
-//! Bytes to the text of a tiny case: most are valid, and every table of the language that acts on a step may be there.
+//! Makes small, mostly valid cases from bytes.
 
 use crate::draw::{between, signed, size};
 use arbitrary::{Result, Unstructured};

@@ -1,4 +1,4 @@
-//! Every target on its corpus, and on mutations of it that are the same in every run.
+//! Runs each target on its corpus and on mutations of it.
 
 mod mutation;
 

@@ -1,4 +1,4 @@
-//! Mutations of given inputs, the same in every run.
+//! Makes reproducible mutations of given inputs.
 
 /// Bytes of a mutated input at most.
 const LONGEST: usize = 8192;

@@ -1,4 +1,4 @@
-//! Finding a checkpoint that can be gone on from: every byte is compared with its record before anyone reads it.
+//! Finds a checkpoint whose bytes agree with its record.
 
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read};

@@ -1,4 +1,4 @@
-//! The commit record: what must be true of a checkpoint's file, with a hash of its own over every byte of it.
+//! The record of a checkpoint, with a hash of itself.
 
 use std::collections::BTreeSet;
 use std::path::Path;

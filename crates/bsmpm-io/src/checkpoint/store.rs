@@ -1,4 +1,4 @@
-//! Writing checkpoints so that a crash at any instant leaves a good one: the first rank's part.
+//! Writes checkpoints such that a crash leaves a valid one.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};

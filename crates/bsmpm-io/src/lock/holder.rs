@@ -1,5 +1,4 @@
-//! Who holds a lock: a process, distinguished from later ones of the same number, and whether it is still there
-//! (Linux).
+//! The process that holds a lock, and whether it is alive (Linux).
 
 use std::fmt::{self, Display, Formatter};
 use std::fs;

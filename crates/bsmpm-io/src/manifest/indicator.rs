@@ -1,4 +1,4 @@
-//! Cheap measures of how far a run can be trusted.
+//! Indicators in the manifest.
 
 use serde::{Deserialize, Serialize};
 

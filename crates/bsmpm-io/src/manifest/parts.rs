@@ -1,4 +1,4 @@
-//! The parts of the manifest.
+//! Parts of the manifest.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};

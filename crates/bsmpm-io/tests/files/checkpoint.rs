@@ -1,4 +1,4 @@
-//! Checkpoints: what was not committed does not count, and what was damaged since is refused.
+//! Tests that uncommitted or damaged checkpoints do not count.
 
 use bsmpm_io::Error;
 use bsmpm_io::checkpoint::{self, ArrayNumber, Facts, FoundCheckpoint, Phase, RecordedArray, Store};

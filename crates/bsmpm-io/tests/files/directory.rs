@@ -1,4 +1,4 @@
-//! The output directory.
+//! Tests the output directory.
 
 use std::fs;
 use std::path::Path;

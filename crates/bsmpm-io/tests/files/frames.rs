@@ -1,4 +1,4 @@
-//! Frames and their list.
+//! Tests frames and their list.
 
 use bsmpm_io::frame::{Field, FieldValues, Frame, Parts};
 use bsmpm_io::frames::{Frames, read_collection};

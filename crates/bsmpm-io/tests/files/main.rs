@@ -1,4 +1,4 @@
-//! The files of a run: what is written is read back to the bit, and what must not be written leaves no trace.
+//! Tests that files of a run are read back bitwise.
 
 mod checkpoint;
 mod directory;

@@ -1,4 +1,4 @@
-//! The manifest.
+//! Tests the manifest.
 
 use bsmpm_io::Error;
 use bsmpm_io::manifest::{

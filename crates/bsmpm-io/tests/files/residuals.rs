@@ -1,4 +1,4 @@
-//! `residuals.csv`.
+//! Tests `residuals.csv`.
 
 use bsmpm_io::Error;
 use bsmpm_io::residuals::{Iterate, ResidualMethod, read};

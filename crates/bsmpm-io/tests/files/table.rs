@@ -1,4 +1,4 @@
-//! Tables with one row a step.
+//! Tests tables with one row per step.
 
 use bsmpm_io::Error;
 use bsmpm_io::steps::StepRow;

@@ -1,4 +1,4 @@
-//! The passes of a step, each by itself, on the points of a state.
+//! Measures the loops of a step.
 
 use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::error::{SolveError, StepError};

@@ -1,4 +1,4 @@
-//! What the core reaches by itself: memory bandwidth and arithmetic, for the other figures to be seen beside.
+//! Measures memory bandwidth and arithmetic speed of a core.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -1,8 +1,4 @@
-//! What a step costs, phase by phase, from a state in mid-flow: `scripts/bench` prints it.
-//!
-//! `phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...`, on one rank, SECONDS for each phase: nanoseconds per point
-//! of every pass, of factorisation and solution, and the bytes that passes move and points take, beside the memory
-//! bandwidth and the arithmetic that the core reaches in the same minute.
+//! Measures each phase of a step: `phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...`
 
 mod kernels;
 mod machine;

@@ -1,4 +1,4 @@
-//! `mpirun -n 2 bsmpm-par case.toml`: the solver program.
+//! The solver program: `mpirun -n 2 bsmpm-par case.toml`.
 
 use bsmpm_par::{launch, program};
 use std::process::ExitCode;

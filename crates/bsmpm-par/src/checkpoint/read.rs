@@ -1,4 +1,4 @@
-//! Finding and reading a checkpoint, on any number of ranks.
+//! Finds and reads a checkpoint on any number of ranks.
 
 use super::refusal::{Refusal, agree, broadcast};
 use super::{GUESS, STATE, form, named};

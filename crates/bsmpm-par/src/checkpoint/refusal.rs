@@ -1,4 +1,4 @@
-//! An error that all ranks know.
+//! An error on which all ranks have agreed.
 
 use bsmpm_io::exit::CHECKPOINT;
 use mpi::collective::{CommunicatorCollectives, Root};

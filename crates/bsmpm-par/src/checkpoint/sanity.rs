@@ -1,5 +1,4 @@
-//! What the points of a checkpoint must be before anything is computed with them. Hashes find every accident; this is
-//! for files that were written as they are, by another program or by a fault of this one.
+//! Checks that material points of a checkpoint are physically possible.
 
 use super::refusal::{Refusal, agree};
 use super::write::infinite;

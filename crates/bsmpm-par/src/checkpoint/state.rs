@@ -1,4 +1,4 @@
-//! What a checkpoint says in words and single numbers: everything that is no array of the points or nodes.
+//! The state in a checkpoint besides the arrays.
 
 mod free_field;
 

@@ -1,4 +1,4 @@
-//! Writing a checkpoint.
+//! Writes a checkpoint from all ranks.
 
 use super::refusal::{Refusal, agree, broadcast};
 use super::{GUESS, STATE, form, named};

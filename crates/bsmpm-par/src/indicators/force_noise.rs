@@ -1,8 +1,4 @@
-//! Noise of the histories of forces: how much they jump from step to step.
-//!
-//! Fourth differences of five rows that are equal steps apart leave of a smooth curve next to nothing: of a wave of 12
-//! steps 0.9 % of its amplitude. Of values with independent errors of the standard deviation s they have 70 s². The
-//! median of their magnitudes is 0.6745 sqrt(70) s for a normal distribution. Single kinks of a curve hardly change it.
+//! Indicator of scatter in force histories (T10.13).
 
 use bsmpm::model::Regime;
 use bsmpm_io::manifest::Indicator;

@@ -1,5 +1,4 @@
-//! Limits of indicators: beyond them an error of 10 % of the answer is likely, and the run ends with a code of its own.
-//! The measurements behind them are in the table of the module above.
+//! Limits of indicators, beyond which a run ends with exit code 82.
 
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;

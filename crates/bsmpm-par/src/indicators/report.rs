@@ -1,4 +1,4 @@
-//! How indicators are printed: their codes, and their values with a unit.
+//! Prints indicators with codes and units.
 
 use bsmpm_io::manifest::Indicator;
 use bsmpm_messages::{code_of, without_code};

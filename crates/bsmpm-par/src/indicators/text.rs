@@ -1,4 +1,4 @@
-//! What is printed of an indicator that is outside its usual range: what was measured, what that means, what to do.
+//! Texts of indicators outside their usual range.
 
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::Regime;
@@ -8,8 +8,8 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm_scene::{Case, Geometry};
 
-/// Poisson's ratio from which on material is nearly incompressible: the lid-driven square and the footing of
-/// `cases/results/stabilisation.md`, for which remedies were measured, have 0.499 and more.
+/// Poisson's ratio from which on material is nearly incompressible: the lid-driven square and the strip
+/// footing of the paper, for which remedies were measured, have 0.499 and more.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 
 /// The text of an indicator of a case by its name, with places for the value, its range and the one that is meant;
@@ -63,8 +63,8 @@ fn against_sliding(case: &Case) -> &'static str {
     }
 }
 
-/// What reduces the noise of the pressure under the method in use, as `cases/results/strip_footing.md`,
-/// `column_collapse.md` and `stabilisation.md` have measured it.
+/// What reduces the noise of the pressure under the method in use, as
+/// measured with the strip footing and the column collapse of the paper.
 fn against_noise(case: &Case) -> &'static str {
     let is_nearly_incompressible = case.bodies.iter().any(|body| {
         let named = &case.materials[body.material];

@@ -1,4 +1,4 @@
-//! What the manifest says before the first step.
+//! The manifest before the first step.
 
 use crate::cli::Arguments;
 use crate::machine;

@@ -1,4 +1,4 @@
-//! Going on with a run's files, and what a checkpoint must know of them.
+//! Continues the files of a run after a restart.
 
 use super::{Headings, Ledger, first};
 use crate::checkpoint::{CheckpointState, Files};

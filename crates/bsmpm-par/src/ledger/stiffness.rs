@@ -1,9 +1,4 @@
-//! Whether the ground fails under its load: how much softer it was in a step than elastic ground.
-//!
-//! The measure is the loss of stiffness, `Σ V0 Δε : D : Δε / Σ V0 Δε : D : Δεᵉ`: the second-order work of elastic
-//! ground with the strain of the step over the actual one (Hill, 1958). The latter is the work of the change of the
-//! loads on the displacement of the step, so that the reciprocal is a current stiffness parameter (Bergan et al., 1978)
-//! which needs no first step to be compared with. It is 1 in elastic ground and has no bound where the ground fails.
+//! Indicator `stiffness-loss` (T10.15): elastic over actual second-order work (Hill, 1958). It is 1 in elastic ground.
 
 use super::Ledger;
 use crate::indicators::STIFFNESS_LOSS;

@@ -1,4 +1,4 @@
-//! The beginning of a run: from its case, or from a checkpoint.
+//! Begins a run from its case or a checkpoint.
 
 use super::refuse;
 use crate::checkpoint::{Refusal, agree};

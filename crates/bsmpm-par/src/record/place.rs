@@ -1,4 +1,4 @@
-//! Quantities at a place: of the point that is followed, of the material there, of a section.
+//! History quantities at a place or a section.
 
 use crate::gather::shown;
 use bsmpm::error::StepError;

@@ -1,4 +1,4 @@
-//! Quantities that a step's report has: of supports, strips, faces in contact and rigid bodies.
+//! History quantities of supports, footings, contact and rigid bodies.
 
 use super::Recorder;
 use bsmpm::boundary::{ContactReport, RigidReport};

@@ -1,4 +1,4 @@
-//! What a directory holds before `--restart auto`, as the first rank sees it, and what may be gone on with.
+//! Examines an output directory for `--restart auto`.
 
 use super::Beginning;
 use crate::checkpoint::Refusal;

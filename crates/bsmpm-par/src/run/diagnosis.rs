@@ -1,4 +1,4 @@
-//! What is reported of a step that failed: where it was worst on all ranks, and what may help.
+//! Finds the largest residuals of a failed step, and remedies.
 
 use bsmpm::control::Failure;
 use bsmpm::error::{SolveError, StepError};
@@ -247,7 +247,7 @@ fn not_converged(
 ) -> Vec<String> {
     let mut lines: Vec<String> = against_no_cohesion(case).into_iter().chain(against_local_failure(case)).collect();
     if case.rigid.iter().any(|body| body.friction > 0.0) {
-        // What stops is what the state became in steps too coarse, not how far the step goes (`boundary/rigid.md`).
+        // What stops is what the state became in steps too coarse, not how far the step goes.
         lines.push("Use several times as many steps from the start, as a rough rigid body needs short steps.".into());
     }
     if iterations >= criteria.max_iterations {

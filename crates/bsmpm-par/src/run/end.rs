@@ -1,4 +1,4 @@
-//! The ends of a run.
+//! Ends a run with a frame, a checkpoint and the manifest.
 
 use super::Run;
 use super::summary::StopCause;

@@ -1,4 +1,4 @@
-//! Steps that cannot be made: what is reported, and the exit code.
+//! Reports failed steps.
 
 use super::{Run, diagnosis};
 use crate::log::short;

@@ -1,4 +1,4 @@
-//! Frames and profiles of a run: when they are wanted, and what is in them.
+//! Times and content of frames and profiles.
 
 use super::Run;
 use crate::gather::{self, Around, FrameMoment, Gathering};

@@ -1,4 +1,4 @@
-//! Checkpoints and frames of the last converged state: when they are due, and what is in them.
+//! Times and content of checkpoints.
 
 use super::Run;
 use crate::checkpoint::{

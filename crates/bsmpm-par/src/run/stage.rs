@@ -1,5 +1,4 @@
-//! Stages: what is removed, placed and exchanged once a step has ended at their time. The rows and frame of that time
-//! are of the state before; checkpoints are of the state after.
+//! Begins stages. Rows and frames of that time show the state before, checkpoints the state after.
 
 use super::Run;
 use crate::launch;

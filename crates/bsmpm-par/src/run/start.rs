@@ -1,4 +1,4 @@
-//! What a run reports and does before its first step.
+//! Reports and output before the first step.
 
 use super::Run;
 use crate::machine;

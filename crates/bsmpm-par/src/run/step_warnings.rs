@@ -1,4 +1,4 @@
-//! Warnings about a step that was accepted, which no other number shows.
+//! Warnings about an accepted step.
 
 use super::Run;
 use crate::checkpoint::Outlet;

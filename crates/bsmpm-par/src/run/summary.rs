@@ -1,4 +1,4 @@
-//! The summary that ends the log.
+//! The summary at the end of the log.
 
 use super::Run;
 use crate::indicators;

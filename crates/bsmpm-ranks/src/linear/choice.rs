@@ -1,4 +1,4 @@
-//! Which solver is wanted, and how PETSc is set up.
+//! Chooses the linear solver and PETSc options.
 
 use bsmpm::parallel::Symmetry;
 use petsc_rs::{Ksp, Matrix, PcFailure, Petsc, ShellPc, Vector};

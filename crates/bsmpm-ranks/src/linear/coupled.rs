@@ -1,4 +1,4 @@
-//! The linear systems of a run: that of the displacements, and where water flows that of the pore pressures beside it.
+//! The linear solvers for displacements and pore pressures.
 
 use super::{Choice, KspSolver, Tallies};
 use crate::halo::MpiHalo;

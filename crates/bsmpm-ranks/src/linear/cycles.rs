@@ -1,5 +1,4 @@
-//! A definite system of PETSc that nobody assembles: its operator is the stencil's product, its preconditioner cycles
-//! of multigrid over the grid's own splines.
+//! Solves a system by KSP with spline multigrid as preconditioner.
 
 use super::choice::Choice;
 use super::direct::{StiffnessOperator, gather};

@@ -1,5 +1,4 @@
-//! The preconditioner of definite systems that is this program's own, under PETSc's KSP: a factor of single precision,
-//! tried by its first solution, or else one of double.
+//! The direct solver as preconditioner of KSP, in single or, if necessary, double precision.
 
 use super::dissection::{Dissection, Precision};
 use super::system::trusted;

@@ -1,11 +1,7 @@
-//! A direct solver for symmetric positive definite systems on boxes of a grid: nested dissection of the grid, dense
-//! fronts.
+//! Direct solver: multifrontal Cholesky factorisation (Duff and Reid, 1983) by nested dissection of a box of nodes.
 //!
-//! Every rank eliminates what only its own cells touch (multifrontal Cholesky factorisation, Duff and Reid 1983, ACM
-//! Trans. Math. Softw. 9, 302-325), then neighbours pair up. Order, schedule and sums depend on the free components and
-//! the cut only: the same bits in every run on as many ranks. A rank holds the factor of its box and, but for the
-//! first one, a dense front of one cut, which of slabs does not become smaller with more ranks. The order comes from
-//! the grid's box of nodes, so that unknowns that come or go cost no analysis of a graph.
+//! Each rank eliminates the unknowns that only its cells touch; groups of ranks then eliminate shared ones. The order
+//! is fixed, so that runs on the same ranks repeat bitwise.
 
 mod factor;
 pub(super) mod front;

@@ -1,11 +1,8 @@
-//! Multigrid over the grid's own splines, as a preconditioner of symmetric positive definite systems on one rank.
+//! Multigrid over the splines, a preconditioner on one rank.
 //!
-//! Coarser splines have every other breakpoint (de Boor's knot insertion makes the finer ones of them), coarse matrices
-//! are P^T A P. Smoothed is by Chebyshev's polynomial of the additive Schwarz method on overlapping boxes of 4 nodes
-//! along every axis, which hold the divergence-free fields of a few cells: without them iterations grow with the bulk
-//! modulus, and pointwise smoothers do not damp what nearly empty cells leave (de Prenter et al. 2020, Comput. Mech.
-//! 65, 807-838; Pé de la Riva, Rodrigo and Gaspar 2019, SIAM J. Sci. Comput. 41, S321-S345). A cycle is a fixed,
-//! linear, symmetric function of the matrix alone.
+//! A coarser space has every other breakpoint. The smoother is a Chebyshev polynomial of an additive Schwarz method on
+//! overlapping boxes of 4 nodes along each axis. These contain divergence-free fields, so that iterations do not grow
+//! with the bulk modulus (de Prenter et al., 2020; Pé de la Riva et al., 2019).
 
 mod patches;
 #[cfg(test)]

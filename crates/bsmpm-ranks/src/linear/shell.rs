@@ -1,5 +1,4 @@
-//! A definite system of PETSc that nobody assembles: its operator is the stencil's product, its preconditioner the
-//! program's own factor.
+//! Solves a system by KSP with the direct solver as preconditioner.
 
 use super::choice::Choice;
 use super::direct::{DissectionFactor, DissectionPc, StiffnessOperator, gather};

@@ -1,4 +1,4 @@
-//! A linear system of PETSc, and which of its solutions are accepted.
+//! A linear system of PETSc, and the check of its solutions.
 
 use super::choice::Choice;
 use super::tally::Tally;

@@ -1,4 +1,4 @@
-//! How KSP's solves ended, counted for the manifest.
+//! Counts KSP's convergence reasons.
 
 use petsc_rs::{Error, Ksp, SolveInfo};
 use std::collections::BTreeMap;

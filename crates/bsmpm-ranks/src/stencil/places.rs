@@ -1,4 +1,4 @@
-//! Where the nodes lie that a node couples with: a box of places around it, cut off by the window's faces.
+//! Positions of the nodes that couple with a node.
 
 use bsmpm::grid::Grid;
 use std::collections::HashMap;

@@ -1,4 +1,4 @@
-//! Tests of one material point.
+//! Data of tests of one material point.
 
 use bsmpm::element::Target;
 

@@ -1,4 +1,4 @@
-//! Water that flows.
+//! Data of pore-water flow, drains and inflows.
 
 use super::{Case, Face, LoadedLine, Plate, Site};
 use bsmpm::water::flow::{Course, Given, Motion, Soil};

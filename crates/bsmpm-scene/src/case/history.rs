@@ -1,4 +1,4 @@
-//! What is recorded every step, and what is verified of it at the end.
+//! Data of histories and their checks.
 
 use crate::words::{Geometry, Measurement, Side};
 

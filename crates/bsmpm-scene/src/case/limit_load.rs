@@ -1,4 +1,4 @@
-//! What a case with `[analysis] purpose = "limit-load"` looks for.
+//! Data of a limit load analysis.
 
 use super::MotionPath;
 

@@ -1,4 +1,4 @@
-//! What acts on the bodies besides gravity: rigid strips, prescribed motions, tractions, point loads, initial stress.
+//! Data of footings, prescribed displacements, loads and initial stress.
 
 use super::{Base, Face};
 use bsmpm::boundary::StripContact;

@@ -1,4 +1,4 @@
-//! Fields along a line.
+//! Data of profiles: fields along a line.
 
 use super::Column;
 use crate::words::ProfileQuantity;

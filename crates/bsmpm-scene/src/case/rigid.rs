@@ -1,4 +1,4 @@
-//! Rigid bodies.
+//! Data of rigid bodies.
 
 use super::{MotionPath, Shares};
 use bsmpm::boundary::rigid::{Outline, Terrain};

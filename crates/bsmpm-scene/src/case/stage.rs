@@ -1,4 +1,4 @@
-//! Stages: which bodies are there when, what acts on them, and which laws they follow.
+//! Data of stages, which change bodies, loads, boundaries and materials.
 
 use super::{Body, Case, DrainSite, Face, Gravity, MotionPath, NamedMaterial, Shares, Support, keeps_direction};
 use bsmpm::boundary::{Contact, Idle};

@@ -1,4 +1,4 @@
-//! Water in the ground.
+//! Data of hydrostatic water.
 
 use super::{Body, Case};
 use crate::grid::{GridAxis, GridSpec};

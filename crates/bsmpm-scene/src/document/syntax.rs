@@ -1,5 +1,4 @@
-//! Errors of TOML in the author's words: where a bracket opened that is not closed, where a key stands first, and what
-//! to write in place of a decimal comma or of a unit without quotes.
+//! Explains TOML syntax errors and their correction.
 
 use crate::error::Origin;
 use crate::report::{Report, shortened};

@@ -1,4 +1,4 @@
-//! A document as TOML text again, for the record of a run whose case was overridden.
+//! Writes a document as TOML text.
 
 use super::{DocumentTable, Node, Value};
 use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! Bodies of a plane as polygons, by what their records say.
+//! Outlines of 2-D bodies, to find openings.
 
 use super::{SurfaceKind, SurfacePoint};
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! The openings of all bodies of a case.
+//! Searches all bodies of a case for openings.
 
 use super::plane::{PlaneBody, PlaneShape};
 use super::solid::surface_points;

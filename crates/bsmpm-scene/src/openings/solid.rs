@@ -1,4 +1,4 @@
-//! Pieces of the surfaces of shapes in space, by what their records say.
+//! Surfaces of 3-D shapes, to find openings.
 
 use super::plane::PlaneShape;
 use super::{SurfaceKind, SurfacePoint};

@@ -1,4 +1,4 @@
-//! Breakpoints along an axis: of equal cells, or of small ones in some ranges and growing ones away from them.
+//! Breakpoints of a preset along an axis, equally spaced or graded (T11.1).
 
 /// Parts of a cell by which a place may miss a grid line: rounding.
 pub(super) const ON_LINE: f64 = 1e-6;

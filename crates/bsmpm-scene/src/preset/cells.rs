@@ -1,5 +1,4 @@
-//! Cells that a preset chooses: equal ones, or small ones around strips, loaded segments, rigid bodies, holes and
-//! re-entrant corners that grow away from them.
+//! Chooses the cells of a preset, with fine zones around footings, loads, rigid bodies, openings and corners.
 
 use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};

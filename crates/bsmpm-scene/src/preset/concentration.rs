@@ -1,5 +1,4 @@
-//! Where stress concentrates: holes and notches of bodies, and steep re-entrant corners, around which a preset's cells
-//! are small.
+//! Finds openings and re-entrant corners, where a preset refines cells.
 
 use super::scene::PresetScene;
 use crate::openings::{self, GridFaces, PlaneBody, PlaneShape};

@@ -1,4 +1,4 @@
-//! What `[analysis] purpose = "limit-load"` chooses where the case does not: measured in `cases/results/limit_load.md`.
+//! Fills in the keys that `analysis.purpose = "limit-load"` implies.
 
 use super::scene::PresetScene;
 use super::{Choice, Completion, ORDER, Preset, quoted};

@@ -1,4 +1,4 @@
-//! What a preset sees of a rigid body: the edges of the rectangle around it that soil lies at, and how far it turns.
+//! The extent of a moving rigid body, for fine zones of a preset.
 
 use crate::record::Record;
 use crate::region;

@@ -1,4 +1,4 @@
-//! What of a scene a preset's cells and steps follow from, read from a record in which much may be missing.
+//! Data of an incomplete case from which a preset chooses cells and steps (T11.2).
 
 use super::Preset;
 use super::rigid::{self, RigidExtent};

@@ -1,4 +1,4 @@
-//! Cells that are small enough for the waves of an input that a record or a table gives.
+//! Limits the cell size of a preset to resolve waves.
 
 use super::scene::PresetScene;
 use crate::record::Record;

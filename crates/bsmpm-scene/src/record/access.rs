@@ -1,4 +1,4 @@
-//! Values by the type that the schema gives them.
+//! Typed access to values of a record.
 
 use super::{Datum, ListRow, Record};
 use crate::schema::Kind;

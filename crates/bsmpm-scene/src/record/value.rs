@@ -1,4 +1,4 @@
-//! One value held against its kind.
+//! Compares one value with the type that the schema requires.
 
 use super::{Datum, ListRow};
 use crate::document::{Node, Value};

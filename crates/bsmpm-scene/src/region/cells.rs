@@ -1,4 +1,4 @@
-//! The lattice points of an outline in a column of cells, and the part of the area that each gets.
+//! Material points of an outline in one column of cells.
 
 use super::edge::Edge;
 use super::reached;

@@ -1,4 +1,4 @@
-//! What a box covers of an axis.
+//! The cells along an axis that a box covers.
 
 use crate::grid::GridAxis;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Points of a shape in space by the vertical lines of a lattice, in whatever way it cuts the cells.
+//! Material points of a 3-D shape, with volumes integrated along vertical lines.
 
 use super::cells::{CellPlace, SLIVER, part, place};
 use super::reached;

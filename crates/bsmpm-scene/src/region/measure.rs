@@ -1,4 +1,4 @@
-//! The volume of a shape less others, for which there is no formula: vertical lines, the closer the rougher the shape.
+//! Integrates the volume of a 3-D shape along vertical lines.
 
 use super::solid::{Section, SolidShape};
 

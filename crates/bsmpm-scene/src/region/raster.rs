@@ -1,4 +1,4 @@
-//! Terrain: what lies between two rasters of heights, bilinear between their posts.
+//! Terrain between two rasters of heights, with bilinear interpolation.
 
 use crate::report::brief;
 use bsmpm::boundary::rigid::Terrain;

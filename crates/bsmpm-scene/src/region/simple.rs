@@ -1,4 +1,4 @@
-//! Whether a polygon is one: at least three corners, an area, and edges that meet at the corners only.
+//! Checks that a polygon has an area and no crossing edges.
 
 /// What is wrong with a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! The surface of bodies: those parts of their edges beside which there is no body.
+//! Edges of a body that no other body covers.
 
 use super::{Edge, Region};
 use crate::grid::GridSpec;

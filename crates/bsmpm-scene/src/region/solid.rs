@@ -1,4 +1,4 @@
-//! Shapes in space. What all of them tell is what they cover of a vertical line, which is all that points need.
+//! 3-D shapes, described by the intervals of vertical lines inside them.
 
 use super::Edge;
 use super::raster::Raster;

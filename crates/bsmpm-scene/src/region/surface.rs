@@ -1,4 +1,4 @@
-//! A closed surface of triangles, by what it encloses of vertical lines.
+//! A closed surface of triangles, and the intervals of vertical lines inside it.
 
 use std::collections::{BTreeMap, HashMap};
 

@@ -1,5 +1,4 @@
-//! Areas of shapes cut out of shapes, inside a window: vertical slices between all places where an edge begins, ends or
-//! crosses another one or the window. Between them edges keep their order, and each slice is exact.
+//! Computes exact areas of outlines with cut-outs, by vertical slices.
 
 use super::edge::{Bulge, Edge};
 

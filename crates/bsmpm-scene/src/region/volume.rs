@@ -1,4 +1,4 @@
-//! What a body fills in space: a cuboid, an outline along an axis, or any shape less others.
+//! The region of a 3-D body: a cuboid, an extruded outline or another shape.
 
 use super::cells::{CellPlace, of_cell, place};
 use super::extent::AxisExtent;

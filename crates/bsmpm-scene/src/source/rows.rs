@@ -1,4 +1,4 @@
-//! Rows of numbers from text files beside the case: `{ file = "record.csv", along = "x" }` in the place of a list.
+//! Reads rows of numbers from text files: `{ file = "record.csv" }`.
 
 use super::{LIMIT, MAX_BYTES, bounded, stl};
 use crate::words::{Geometry, Word};

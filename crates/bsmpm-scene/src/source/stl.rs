@@ -1,4 +1,4 @@
-//! Triangles from STL files, binary or text, as rows of three corners.
+//! Reads triangles from STL files.
 
 use std::io::{self, Error, ErrorKind};
 

@@ -1,4 +1,4 @@
-//! Rigid strips of a case: the footing and the prescribed motions.
+//! Converts footings and prescribed segments to surface points with a penalty (T6.5).
 
 use super::transition::{self, Neighbour};
 use super::{normal, on_plate, unit};

@@ -1,5 +1,4 @@
-//! Strips that meet and move differently: which part of each other's motion their points follow. See
-//! [`bsmpm::boundary::strip`].
+//! Displacement between adjacent footings that move differently (T6.7).
 
 use bsmpm::boundary::surface::Attachment;
 use bsmpm::boundary::{MotionShare, Strip, SurfacePoint};

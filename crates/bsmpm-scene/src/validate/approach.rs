@@ -1,4 +1,4 @@
-//! Bodies that move towards each other: they share nodes, and act on each other, before they touch.
+//! Warns of bodies that approach each other and share nodes.
 
 use crate::case::{Case, Support};
 use crate::report::{Report, brief};

@@ -1,5 +1,4 @@
-//! What an axisymmetric case must and must not have: the axis is the grid's left face, and nothing moves or acts
-//! sideways that would not do so all around it.
+//! Checks rules of axisymmetric cases.
 
 use crate::case::{Body, Case, DrainSite, Face, Geometry, LoadedLine, Quantity, Support};
 use crate::record::Record;

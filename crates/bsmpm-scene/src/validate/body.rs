@@ -1,4 +1,4 @@
-//! Bodies: their material, their place in the grid and the number of their points.
+//! Validates bodies: material, position and material points.
 
 use super::shape;
 use crate::case::{Body, Case};

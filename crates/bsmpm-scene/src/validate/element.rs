@@ -1,4 +1,4 @@
-//! Tests of one material point.
+//! Validates tests of one material point.
 
 use crate::case::{ElementStage, ElementTest, NamedMaterial};
 use crate::grid::GridSpec;

@@ -1,4 +1,4 @@
-//! Water that flows: soils, drains and inflows.
+//! Validates pore-water flow, drains and inflows.
 
 mod crossing;
 mod leaks;

@@ -1,4 +1,4 @@
-//! Sides that follow a free field.
+//! Validates free-field boundaries.
 
 use super::physics::reached;
 use crate::case::{Body, Case, Geometry, LoadedLine, Rigid, RigidShape, Site, Support};

@@ -1,4 +1,4 @@
-//! Bodies that are apart by less than a cell: they share nodes, and act on each other before they touch.
+//! Warns of bodies less than a cell apart, which share nodes.
 
 use crate::case::{Body, Case};
 use crate::connected::{near_pairs, pieces_of_pairs};

@@ -1,4 +1,4 @@
-//! Cells along the axes; a free face moves outward to a whole cell.
+//! Validates cells, and moves free faces of the grid outward to whole cells.
 
 use crate::case::Support;
 use crate::estimate::{self, MOST_UNKNOWNS};

@@ -1,4 +1,4 @@
-//! Histories and the checks of their columns.
+//! Validates histories and their checks.
 
 mod location;
 

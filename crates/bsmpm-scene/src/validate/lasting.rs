@@ -1,5 +1,4 @@
-//! What lasts where only faces that absorb hold: they hold what `[initial]` has found, and let the ground drift away
-//! under the rest.
+//! Warns of permanent loads that only absorbing boundaries resist, which causes drift.
 
 use super::physics::{ALONG, holds_at_rest};
 use super::place::{along, ring};

@@ -1,4 +1,4 @@
-//! Bodies that lie at an open face of the grid at the start and move out of it: the run ends there with exit code 81.
+//! Warns of bodies that leave the grid through a free face.
 
 use super::physics;
 use crate::case::{Body, Case, Face, Geometry, Support};

@@ -1,6 +1,4 @@
-//! `[analysis] purpose = "limit-load"`: the ground becomes stiff, and prescribed displacements small, in the same
-//! proportion. The geometry then stays as drawn, as in the theory of plasticity, and the load at failure does not
-//! depend on the stiffness (by 1.4 % if it grows tenfold).
+//! Validates limit load analyses, and scales their stiffness and displacements (T9.8).
 
 use super::site;
 use crate::case::{

@@ -1,9 +1,5 @@
-//! C0 lines: grid lines across which strains may jump, placed where they do.
-//!
-//! A spline with continuous slopes cannot hold a jump of strain: about three cells on either side ring. Strains jump
-//! where materials of unlike stiffness meet, and are singular at the ends of strips and loaded segments, which without
-//! a line would hold or load all that the splines reach, a cell further. `cases/results/stabilisation.md` has the
-//! figures.
+//! Places C0 lines (repeated breakpoints) at material interfaces and ends of footings and loads. Strains may jump
+//! there.
 
 mod ends;
 mod faces;

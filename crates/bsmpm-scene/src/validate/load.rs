@@ -1,4 +1,4 @@
-//! Tractions, point loads, and the stress at the start.
+//! Validates tractions, point loads and initial stress.
 
 use super::material::profile;
 use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring};

@@ -1,4 +1,4 @@
-//! Materials and what is doubtful about their parameters.
+//! Validates materials, and warns of doubtful parameters.
 
 pub(super) mod band;
 mod law;

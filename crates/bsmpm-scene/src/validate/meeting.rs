@@ -1,4 +1,4 @@
-//! Strips that meet one another or a rigid body, and move differently.
+//! Checks footings and prescribed segments that meet with different displacements.
 
 use super::place::is_in;
 use crate::case::{Acting, Case};

@@ -1,4 +1,4 @@
-//! Cells across the holes and notches of bodies: with too few of them the stress at their edge is too small.
+//! Warns of holes and notches with too few cells across.
 
 use crate::case::{Case, NarrowestOpening};
 use crate::openings::{self, BodyOpening, GridFaces};

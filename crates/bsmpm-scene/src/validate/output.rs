@@ -1,4 +1,4 @@
-//! Frames, residuals and restart files.
+//! Validates the output of frames, residuals and checkpoints.
 
 use crate::case::{Checkpoint, Every, Format, Output};
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! What only the whole case shows: supports that hold it, and combinations that are doubtful.
+//! Checks supports and doubtful combinations in the whole case.
 
 use super::NEARLY_INCOMPRESSIBLE;
 use super::place;

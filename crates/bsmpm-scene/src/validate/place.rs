@@ -1,4 +1,4 @@
-//! Whether places lie in the grid, and whether there is a body at them.
+//! Checks whether places lie in the grid and in a body.
 
 use crate::case::{Body, Face, Geometry};
 use crate::grid::GridSpec;

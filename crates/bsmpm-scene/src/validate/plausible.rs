@@ -1,6 +1,4 @@
-//! Whether the physics is plausible: values that look like another unit, gravity that does not point down, bodies,
-//! histories and loads that are out of scale. Each is a warning with its probable cause. Who writes a value with its
-//! unit says that it is meant, but for the size of bodies.
+//! Warns of implausible input, such as values in a wrong unit.
 
 mod direction;
 mod place;

@@ -1,4 +1,4 @@
-//! Profiles along lines.
+//! Validates profiles along lines.
 
 use super::history;
 use crate::case::Profile;

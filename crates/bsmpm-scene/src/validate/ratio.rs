@@ -1,4 +1,4 @@
-//! Pore pressure that points carry, `ru`, and what it cannot be combined with.
+//! Validates pore pressure ratios `ru`.
 
 use crate::case::{Body, Case, Support};
 use crate::record::Record;

@@ -1,5 +1,4 @@
-//! Strength that is reduced not from the start but in a stage, or at the end of one: the case until then, and the steps
-//! that follow.
+//! Validates strength reduction.
 
 use crate::case::{Acting, Case, Counted, Gravity, PointLoad, Quantity, Rigid, Stage, Traction};
 use crate::nearest::unknown_name;

@@ -1,4 +1,4 @@
-//! Rigid bodies.
+//! Validates rigid bodies.
 
 mod beyond;
 mod outline;
@@ -17,7 +17,7 @@ use bsmpm::boundary::rigid::{Outline, Sizes};
 use bsmpm::model::Regime;
 use bsmpm::tensor::Vector;
 
-/// Cells that a rigid body should be thick, so that it parts what is on its two sides (`cases/results/scenes.md`).
+/// Cells that a rigid body should be thick, so that it parts what is on its two sides.
 const THICK: f64 = 2.0;
 /// Parts of a cell by which a rigid body may overlap a body at the start.
 const OVERLAP: f64 = 0.05;

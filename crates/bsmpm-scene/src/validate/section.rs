@@ -1,4 +1,4 @@
-//! Section forces beside strips, rigid bodies and loads: a section has a part of what acts in the cells at it.
+//! Warns of section forces that include part of a nearby load.
 
 use super::{place, stage};
 use crate::case::{Case, Quantity, RigidShape, RigidSolid};

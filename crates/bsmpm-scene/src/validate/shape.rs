@@ -1,4 +1,4 @@
-//! Shapes of bodies and of what is cut out of them.
+//! Validates shapes of bodies and cut-outs.
 
 mod solid;
 

@@ -1,4 +1,4 @@
-//! Curved surfaces of a solid that are loaded: triangles, which need not enclose anything, and spheres.
+//! Divides loaded curved surfaces in 3-D into small triangles.
 
 use super::place::{at_volume, beyond};
 use super::site::AroundStrip;

@@ -1,4 +1,4 @@
-//! On which side of lines and plates bodies lie.
+//! Finds the side of a loaded surface on which bodies lie.
 
 use super::place::{along, beside, ring, side_of_bodies};
 use super::sheet::middle;

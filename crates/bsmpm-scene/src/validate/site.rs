@@ -1,4 +1,4 @@
-//! Where strips, plates and loads lie: segments of a plane, plates of a solid, faces of the grid.
+//! Validates positions of footings, plates and loads.
 
 use super::place::{along, beyond, face, is_at, over};
 use crate::case::{Body, Plate, Site, Support};

@@ -1,4 +1,4 @@
-//! What has no meaning in three dimensions yet, and what has none in a plane.
+//! Refuses keys that the geometry (plane or 3-D) does not have.
 
 use crate::case::{Case, FaceSupport, Support};
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! The solver's settings and their defaults that depend on the analysis.
+//! Validates solver settings, and chooses their defaults.
 
 use crate::case::{Case, Linear, NamedMaterial, Solver};
 use crate::estimate;
@@ -188,8 +188,8 @@ fn in_a_word(solver: LinearSolver) -> Linear {
     }
 }
 
-/// Unknowns of a solid from which a factor takes longer than the iterations that it saves: measured in
-/// `cases/results/solid.md`.
+/// Unknowns of a solid from which a factor takes longer than the iterations that it saves (measured
+/// with a slope and a column in 3-D).
 const FEW_IN_SPACE: u64 = 10_000;
 /// Unknowns of a solid from which multigrid is taken: both take the same time with 115,000 in dynamics (same place).
 const MANY_IN_SPACE: u64 = 150_000;

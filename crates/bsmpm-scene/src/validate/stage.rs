@@ -1,4 +1,4 @@
-//! Stages: times that follow each other, bodies that can be removed and placed then, and what must not lose its body.
+//! Validates stages.
 
 mod absorbing;
 

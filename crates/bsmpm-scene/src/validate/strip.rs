@@ -1,4 +1,4 @@
-//! The footing and prescribed motions.
+//! Validates footings and prescribed displacements.
 
 use super::load::{not_increasing, warn_of_late};
 use super::place::{is_beyond, is_in, side_of_bodies};

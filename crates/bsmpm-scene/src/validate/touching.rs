@@ -1,4 +1,4 @@
-//! Rigid bodies that overlap, or whose surfaces meet and move differently: they do not touch each other.
+//! Checks rigid bodies that overlap or touch each other.
 
 use super::place::is_in;
 use crate::case::Case;

@@ -1,4 +1,4 @@
-//! Rigid bodies below the water table: still water does not press on them.
+//! Warns of rigid bodies below the water table, which have no buoyancy.
 
 use crate::case::{Case, Rigid, RigidShape, Water};
 use crate::report::Report;

@@ -1,4 +1,4 @@
-//! Water in the ground.
+//! Validates hydrostatic water.
 
 use super::STANDARD_GRAVITY;
 use super::load::increasing;

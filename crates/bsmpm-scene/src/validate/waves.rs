@@ -1,4 +1,4 @@
-//! The mass matrix of a case that gives none, and whether cells are small enough for the waves that it makes.
+//! Chooses the mass matrix, and warns if cells are too large for waves.
 
 use crate::case::{Body, Case, MASS, Support};
 use crate::record::Record;

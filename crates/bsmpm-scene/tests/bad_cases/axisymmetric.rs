@@ -1,4 +1,4 @@
-//! Rows of what is not the same all around an axis.
+//! Invalid axisymmetric cases.
 
 use super::{Row, row};
 

@@ -1,4 +1,4 @@
-//! Rows about water that flows.
+//! Invalid cases with pore-water flow.
 
 use super::{Row, row};
 

@@ -1,4 +1,4 @@
-//! Rows about shapes, layers, strips, loads and the stress at the start.
+//! Invalid shapes, layers, footings, loads and initial stresses.
 
 use super::{Row, row};
 

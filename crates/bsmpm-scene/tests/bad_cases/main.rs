@@ -1,6 +1,4 @@
-//! Malformed cases: every one is refused with the line, the key and the reason that it deserves.
-//!
-//! A row changes one place of a valid case; the line expected is that of the change, moved where the row says so.
+//! Tests that malformed cases are refused with line, key and reason.
 
 mod axisymmetric;
 mod flow;

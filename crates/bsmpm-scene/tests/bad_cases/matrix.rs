@@ -1,6 +1,4 @@
-//! Bad inputs, row by row. What has a table or a test of its own is named where it stands: I02 and I07
-//! for every key of the schema in `mutation`, I05, I06, I21 and the bounds of I20 in `texts`; I19, I22, I23 and the
-//! memory of I20 belong to the program, `bsmpm-trials/tests/trials/command_line`.
+//! Tests the bad inputs I01 to I26, except those in `mutation`, `texts` and `bsmpm-trials`.
 
 use super::{DYNAMIC, Row, STATIC, row, verify};
 use bsmpm_scene::Case;

@@ -1,4 +1,4 @@
-//! What a user sees of wrong soils and scenes: `cases/results/wrong_cases.md`, which is made here.
+//! Compares `cases/results/wrong_cases.md` with present messages.
 
 use super::{DYNAMIC, SEEPING, STATIC};
 use bsmpm_scene::Case;

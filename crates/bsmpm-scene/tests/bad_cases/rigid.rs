@@ -1,4 +1,4 @@
-//! Rows about rigid bodies.
+//! Invalid rigid bodies.
 
 use super::{Row, row};
 

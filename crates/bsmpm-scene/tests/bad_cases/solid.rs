@@ -1,4 +1,4 @@
-//! What a case in three dimensions must not say, and a case in a plane not of a third one.
+//! Invalid 3-D cases, and 3-D keys in plane cases.
 
 use super::{Row, row};
 

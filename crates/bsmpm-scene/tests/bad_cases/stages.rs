@@ -1,4 +1,4 @@
-//! Wrong stages: what comes and goes, acts and is released, and changes its law.
+//! Invalid stages.
 
 use super::{Row, row};
 

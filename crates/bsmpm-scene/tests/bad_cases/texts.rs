@@ -1,4 +1,4 @@
-//! Texts that are no case at all, and how errors are reported (rows I01 to I07, I20, I21).
+//! Tests texts that are no case, and the report of errors.
 
 use super::{DYNAMIC, STATIC};
 use bsmpm_scene::{Case, Error, MAX_BYTES, Place};

@@ -1,4 +1,4 @@
-//! Rows about water in the ground.
+//! Invalid cases with hydrostatic water or `ru`.
 
 use super::{Row, row};
 

@@ -1,4 +1,4 @@
-//! Valid cases that hold every key of the schema between them.
+//! Valid cases that together contain every key.
 
 pub const FULL: &str = include_str!("../full.toml");
 const WET_SOLID: &str = include_str!("../bad_cases/wet_solid.toml");

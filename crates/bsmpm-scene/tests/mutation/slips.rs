@@ -1,4 +1,4 @@
-//! One slip of the author gives one error, the one that names it: what only follows from it is not printed.
+//! Tests that one slip gives one error.
 
 use super::written::{self, Fits};
 use super::{bases, without};

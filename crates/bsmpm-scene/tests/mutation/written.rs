@@ -1,4 +1,4 @@
-//! The keys of the schema where they stand in a text: the reader of TOML and the schema are walked side by side.
+//! Finds the values of keys in the text of a case.
 
 use bsmpm_scene::schema::{Dimension, Kind, Presence, ROOT, Range, Table};
 use std::ops::Range as Span;

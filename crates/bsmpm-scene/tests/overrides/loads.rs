@@ -1,4 +1,4 @@
-//! What strips, loads and the stress at the start become.
+//! Tests footings, loads and initial stress of valid cases.
 
 use super::{FULL, STATIC, doubts, set, valid};
 use bsmpm::boundary::Load;

@@ -1,4 +1,4 @@
-//! `--set KEY=VALUE`, and what a valid case becomes.
+//! Tests `--set KEY=VALUE`, and values of valid cases.
 
 mod loads;
 mod materials;

@@ -1,4 +1,4 @@
-//! What materials become: laws by their words, heights, reduced strength.
+//! Tests materials of valid cases.
 
 use super::{FULL, ROUND, STATIC, set, valid};
 use bsmpm::kinematics::PlaneStrain;

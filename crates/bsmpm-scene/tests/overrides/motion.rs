@@ -1,4 +1,4 @@
-//! Bodies that move at the start.
+//! Tests bodies with initial velocity or spin.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! What every command with a batch of runs takes on its command line.
+//! Command-line options of commands that make a batch.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;

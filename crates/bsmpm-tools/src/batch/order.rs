@@ -1,4 +1,4 @@
-//! What a run of a batch is made from: the case with its settings, valid and with a name of its own.
+//! A run of a batch: the case with its settings and name.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Several things at a time, as many as there are cores and memory for; it knows no runs.
+//! Runs tasks in parallel, within free cores and memory.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc;

@@ -1,5 +1,4 @@
-//! How the iterations of one step converged in several runs: both measures on logarithmic axes (Fig. 4 of the paper),
-//! and as a table. The rows are those of `residuals.csv`.
+//! Draws the convergence of one step in several runs (Fig. 4 of the paper).
 
 use std::fmt::Write;
 use std::path::Path;

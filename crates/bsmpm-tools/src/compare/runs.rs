@@ -1,4 +1,4 @@
-//! The curves of the runs, with their names and those of the axes.
+//! Reads the compared curves, with names and axes.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The curves as a table of text: a row for every x, a column for every curve.
+//! Writes curves as a table with a row for each x.
 
 use super::runs::Runs;
 use crate::picture::axes::label;

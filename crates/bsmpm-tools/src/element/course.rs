@@ -1,4 +1,4 @@
-//! A test followed step by step, and its table.
+//! Computes a laboratory test step by step.
 
 use std::fmt::Write;
 

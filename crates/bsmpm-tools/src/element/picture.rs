@@ -1,4 +1,4 @@
-//! Tests as laboratories draw them: strength and volume against the strain, the path of stress, and compression.
+//! Draws diagrams of laboratory tests.
 
 use std::path::{Path, PathBuf};
 

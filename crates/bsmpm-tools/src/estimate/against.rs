@@ -1,4 +1,4 @@
-//! What a run has taken, to be set beside an estimate.
+//! Reads the cost of a completed run.
 
 use std::path::Path;
 

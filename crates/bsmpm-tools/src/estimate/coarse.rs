@@ -1,4 +1,4 @@
-//! Coarse forms of a case: larger cells, no more points in them than iterations need, and nothing that is written.
+//! Makes coarser versions of a case, for trial runs.
 
 use bsmpm_scene::{Case, GridAxis};
 use toml::{Table, Value};

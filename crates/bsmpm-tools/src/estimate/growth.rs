@@ -1,10 +1,4 @@
-//! How much more work the case is than its coarse forms.
-//!
-//! Iterations of coarse forms, counted over all the case's time, follow a + b/h: what is not stiffer in smaller cells,
-//! and what is. The granular column needs 5.2, 7.2 and 20.1 of them a step in cells of 20, 10 and 2.5 mm; the first two
-//! give 19.4. In quasi-static analysis, where no mass is beside the stiffness, the iterations of secants hardly feel
-//! the cells: what forms of few cells show of a trend there is something else, and only the case's own first steps are
-//! believed.
+//! Extrapolates the work of coarser versions to a case. In dynamics the iterations are a + b/h with the cell size h.
 
 use bsmpm_scene::Regime;
 

@@ -1,4 +1,4 @@
-//! How fast this machine is beside another: it returns trial stresses to the yield surface, one point at a time.
+//! Measures the speed of this machine by return mappings.
 
 use std::hint::black_box;
 use std::time::Instant;

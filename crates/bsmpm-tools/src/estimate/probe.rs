@@ -1,5 +1,4 @@
-//! Runs that an estimate is made from, in a folder that goes with them: the start of the case, its first steps, coarse
-//! forms of it over all its time, and the whole case where that takes no longer than they may.
+//! Makes trial runs in a temporary folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What is reported of an estimate: a table for people, JSON for programs.
+//! Prints an estimate as a table and as JSON.
 
 use std::fmt::Write;
 use std::path::Path;

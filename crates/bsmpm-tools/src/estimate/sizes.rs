@@ -1,4 +1,4 @@
-//! What follows from a case without running it: steps, and what will be on the disk.
+//! Estimates steps and disk space without a run.
 
 use bsmpm_scene::model::{frame_times, schedule};
 use bsmpm_scene::{Case, Every, Regime};

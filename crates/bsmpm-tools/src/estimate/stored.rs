@@ -1,7 +1,4 @@
-//! What runs took on the machine of reference: where nothing may be run, and to plan the probes with.
-//!
-//! Fitted to the processor seconds of the shipped short cases and of the column at the paper's resolution, one rank
-//! each; of solids to the runs of `cases/results/solid.md`.
+//! Cost coefficients of a reference machine, fitted to runs.
 
 use bsmpm_scene::words::Pc;
 use bsmpm_scene::{Case, Regime};
@@ -115,7 +112,7 @@ pub(super) fn spread(case: &Case, ranks: usize, unknowns: Option<u64>, nodes: f6
 mod tests {
     use super::*;
 
-    /// The CPU seconds of `cases/results/solid.md` lie in the band that is reported.
+    /// Measured CPU seconds lie in the band that is reported.
     #[test]
     fn solids_took_what_is_reported_of_them() {
         let column = include_str!("../../../../cases/round_column.toml");

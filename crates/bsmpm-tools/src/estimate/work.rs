@@ -1,4 +1,4 @@
-//! The work of a run in one number, so that what was measured in some steps can be carried to others.
+//! The work of a run as one number (T11.3).
 
 use serde::Serialize;
 

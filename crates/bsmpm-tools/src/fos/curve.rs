@@ -1,5 +1,4 @@
-//! Displacement against the strength reduction factor, and the two ways to see failure in it: twice the elastic
-//! displacement, and the kink between the branch before failure and the one after it.
+//! Judges failure by the curve of displacement against factor (T9.7).
 
 use crate::line::{BENT, FALLEN, FittedLine};
 

@@ -1,5 +1,4 @@
-//! Which factors a search may ask for next: the search itself, gone on with guesses of the trials that are not known
-//! yet. It knows no runs, and nothing of how a search chooses.
+//! Predicts the next factors of a search.
 
 use super::curve::CurveState;
 use super::search::{Halt, SearchPlan, search};

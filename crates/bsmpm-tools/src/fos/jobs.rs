@@ -1,9 +1,4 @@
-//! Several trials at the same time. The search asks for one after the other; while one is made, others begin for which
-//! it may ask next. Only what it has asked for counts, so how many run, and which one ends first, changes nothing but
-//! the time.
-//!
-//! A trial beyond failure costs many times as much as one before it: those that cannot be asked for any more are
-//! stopped. Rounds that wait for all of theirs were slower by a third and more.
+//! Runs trials in parallel, and stops those that the search no longer needs.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};

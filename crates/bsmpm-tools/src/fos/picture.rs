@@ -1,5 +1,4 @@
-//! Pictures of a search: displacement against the factor, with the band and the branches that meet in the kink; and the
-//! mechanism, as the first failed trial shows it.
+//! Draws displacement against factor, and the failure mechanism.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What a search found: judged trials, both factors with their bands, and the conditions; as text, CSV and JSON.
+//! Writes the result of a search as text, CSV and JSON.
 
 use bsmpm_messages::headed;
 use serde::Serialize;

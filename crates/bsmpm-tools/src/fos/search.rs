@@ -1,6 +1,4 @@
-//! Which factors are tried: up a ladder until the body fails, then closer and closer about the places where its
-//! displacement doubles, where the branch after failure begins and ends, and where both branches meet. It knows no
-//! runs.
+//! Chooses factors: increasing until failure, then refined.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! What a search looks for: the factor of safety, or the critical seismic coefficient.
+//! The unknown of a search: factor of safety or seismic coefficient.
 
 use bsmpm_scene::Case;
 use bsmpm_scene::words::{Geometry, Side};

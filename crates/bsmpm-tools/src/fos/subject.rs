@@ -1,4 +1,4 @@
-//! The case whose factor of safety is wanted: whether it has one, and the conditions that belong to every such factor.
+//! Reads the case of a search for the factor of safety.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Trials: runs of the case with reduced strength, and what each of them gave.
+//! Makes trial runs with reduced strength.
 
 use std::path::{Path, PathBuf};
 

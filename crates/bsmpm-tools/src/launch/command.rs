@@ -1,4 +1,4 @@
-//! The words that start the solver, and how many such commands the machine takes at a time.
+//! The command that starts the solver.
 
 use std::env;
 use std::thread;

@@ -1,4 +1,4 @@
-//! What a run left, and whether it counts.
+//! Outcome of a run: state, results and cost.
 
 use std::fs;
 use std::iter::Sum;

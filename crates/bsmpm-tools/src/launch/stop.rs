@@ -1,5 +1,4 @@
-//! A process that another thread may ask to end, with the signal by which batch systems and people do (TERM); and that
-//! ends where this program is asked to.
+//! A process that another thread can stop.
 
 use std::io::{self, ErrorKind, Read};
 use std::os::unix::net::UnixStream;

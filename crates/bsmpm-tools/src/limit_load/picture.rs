@@ -1,4 +1,4 @@
-//! Load against displacement on every grid, with the extrapolated loads.
+//! Draws load against displacement on each grid.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The loads on all grids, what they say of an infinitely fine one, and what it took.
+//! Reports loads on all grids, and their extrapolation (T9.9).
 
 use bsmpm_io::manifest::ManifestLimitLoad;
 use bsmpm_messages::headed;

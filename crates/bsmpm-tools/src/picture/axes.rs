@@ -1,4 +1,4 @@
-//! Two axes with ticks and labels about a box of the sheet.
+//! Draws axes with ticks and labels.
 
 use super::canvas::{Canvas, TextAlign, fitting, width};
 use super::colour::{INK, OUTLINE, RULE, Rgb};

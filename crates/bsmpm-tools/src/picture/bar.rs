@@ -1,4 +1,4 @@
-//! The bar that says which colour is which number.
+//! Draws the colour bar.
 
 use super::axes::{self, ChartAxes, LABEL, Label, NUMBER, THIN, TICK};
 use super::canvas::{Canvas, TextAlign, fitting, width};

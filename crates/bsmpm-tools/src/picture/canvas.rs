@@ -1,5 +1,4 @@
-//! A sheet of paper in memory. Everything is drawn [`FINE`] times larger and averaged when it is saved, which smooths
-//! all edges alike. Lengths are pixels of the saved picture, from its upper left corner.
+//! A canvas in memory, [`FINE`] times larger than the saved picture. Lengths are pixels of the saved picture.
 
 use std::io;
 use std::path::Path;

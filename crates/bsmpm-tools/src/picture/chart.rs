@@ -1,4 +1,4 @@
-//! Curves and points over one pair of axes, with levels across them.
+//! Draws curves and points over axes.
 
 use super::axes::{BELOW, ChartAxes, LEFT, LINEAR, Label, NUMBER, title};
 use super::canvas::{Canvas, TextAlign, fitting, width};

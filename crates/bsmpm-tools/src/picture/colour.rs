@@ -1,4 +1,4 @@
-//! The colours of all pictures.
+//! Colours of all pictures.
 
 /// Red, green, blue.
 pub(crate) type Rgb = [u8; 3];

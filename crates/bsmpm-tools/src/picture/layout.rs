@@ -1,4 +1,4 @@
-//! Where the axes of a region stand on the sheet when a metre is as long upward as across.
+//! Positions axes with equal scales.
 
 use super::axes::{ChartAxes, LEFT, LINEAR};
 

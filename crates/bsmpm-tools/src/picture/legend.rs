@@ -1,4 +1,4 @@
-//! Which line means what: a row, or several, of names above the axes, where they can hide nothing.
+//! Draws the legend above the axes.
 
 use super::axes::NUMBER;
 use super::canvas::{Canvas, TextAlign, fitting, width};

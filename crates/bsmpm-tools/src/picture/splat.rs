@@ -1,6 +1,4 @@
-//! Fills a body from its points: a dot of the sheet takes the colour of the nearest point, if one is near enough; then
-//! the rim is taken off again to where the body ends. So a body of few points or of many looks filled where it is
-//! stretched, keeps its size, and no point hides its neighbours. At walls nothing is taken off.
+//! Fills a body with the colour of the nearest material point.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! Round numbers for axes.
+//! Chooses round numbers for axes.
 
 /// How numbers are spread along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

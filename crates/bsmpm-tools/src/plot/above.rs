@@ -1,4 +1,4 @@
-//! A solid from above: the heights of its highest points, shaded as if light came from the upper left.
+//! Draws the plan view of a 3-D run.
 
 use bsmpm_io::frame::Frame;
 use std::collections::HashMap;

@@ -1,4 +1,4 @@
-//! The body at chosen times, coloured by a quantity of its points; one range of colours for all times.
+//! Draws the body, coloured by a field.
 
 use bsmpm_io::frame::Frame;
 use bsmpm_scene::{Case, Regime};

@@ -1,4 +1,4 @@
-//! How hard the steps were: iterations of each step above, its length below.
+//! Draws iterations and length of each step.
 
 use bsmpm_io::table::Columns;
 

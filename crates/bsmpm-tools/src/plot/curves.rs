@@ -1,5 +1,4 @@
-//! Pictures of the histories: quantities against time, and the pressure of a footing against its penetration (Fig. 12
-//! of the paper).
+//! Draws histories against time, and footing pressure against penetration.
 
 use bsmpm_io::table::Columns;
 

@@ -1,4 +1,4 @@
-//! What can colour the body.
+//! Fields that can colour the body.
 
 use bsmpm_io::frame::{FieldValues, Frame};
 use clap::ValueEnum;

@@ -1,5 +1,4 @@
-//! Outlines of rigid bodies where they are at the time of a frame: on their paths, or where histories say of those that
-//! move freely; one that no history follows is not drawn.
+//! Draws outlines of rigid bodies.
 
 use bsmpm::boundary::RigidBody;
 use bsmpm::boundary::rigid::Outline;

@@ -1,5 +1,4 @@
-//! The section of a solid that pictures show: its points near a plane across an axis, the upright one halfway from the
-//! front to the back unless another is wanted.
+//! A section of a 3-D run: material points near a plane.
 
 use bsmpm_io::frame::{FieldValues, Frame};
 

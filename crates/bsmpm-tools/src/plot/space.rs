@@ -1,5 +1,4 @@
-//! A solid as it looks from the front, the right and above: its points as balls that hide what is behind them, in the
-//! colours of a field, shaded as if light came from the upper left.
+//! Draws a 3-D run in perspective.
 
 use bsmpm::boundary::rigid::Outline;
 use bsmpm_io::frame::Frame;

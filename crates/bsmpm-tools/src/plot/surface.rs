@@ -1,4 +1,4 @@
-//! The free surface at chosen times: the highest point of every column of cells.
+//! Draws the free surface at chosen times.
 
 use bsmpm_io::frame::Frame;
 use bsmpm_io::table::Columns;

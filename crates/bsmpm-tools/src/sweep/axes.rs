@@ -1,4 +1,4 @@
-//! What is varied: keys of the case with their values, and the settings that they make together.
+//! Combinations of the keys and values that a sweep varies.
 
 /// Settings of a sweep at most; more is a mistake in a list.
 const MOST: usize = 10_000;

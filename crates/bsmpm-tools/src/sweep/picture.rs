@@ -1,4 +1,4 @@
-//! Error against cost, both by their logarithms, with the front drawn, numbered, and named at the side.
+//! Draws error against cost, with the Pareto front.
 
 use std::path::Path;
 

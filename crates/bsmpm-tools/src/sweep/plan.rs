@@ -1,4 +1,4 @@
-//! What a sweep is to do, looked through before anything runs.
+//! Checks a sweep before any run starts.
 
 use bsmpm_scene::Case;
 

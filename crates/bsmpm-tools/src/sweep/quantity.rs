@@ -1,4 +1,4 @@
-//! What is wanted of a run: columns of its history at times, and how far they are from a reference.
+//! Quantities of a run, and their error (T11.6).
 
 use bsmpm_io::table::Columns;
 

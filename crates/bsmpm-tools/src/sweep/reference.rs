@@ -1,5 +1,4 @@
-//! What errors are measured against: a run of the sweep, Richardson's extrapolation of some of them, a run elsewhere,
-//! numbers.
+//! Reference values for the errors of a sweep.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,4 @@
-//! What a sweep found: runs with their errors and costs, fronts, and the cheapest settings that are good enough; as
-//! text, CSV and JSON.
+//! Writes the result of a sweep as text, CSV and JSON.
 
 use serde::Serialize;
 

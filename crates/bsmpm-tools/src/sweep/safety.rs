@@ -1,4 +1,4 @@
-//! A factor of safety in the place of a run: `bsmpm fos` of the case with the settings of one.
+//! Computes a factor of safety for a setting, in place of a run.
 
 use std::path::PathBuf;
 

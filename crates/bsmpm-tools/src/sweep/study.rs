@@ -1,4 +1,4 @@
-//! The runs of a sweep: the case with each setting, and the baseline among them or besides.
+//! Runs of a sweep: the case with each setting.
 
 use std::path::Path;
 

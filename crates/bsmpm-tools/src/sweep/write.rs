@@ -1,4 +1,4 @@
-//! A setting written back as a case file: the original with the values replaced, its comments and order kept.
+//! Writes a setting as a case file with its original comments.
 
 use bsmpm_scene::schema::{Kind, ROOT, Table as Schema};
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};

@@ -1,4 +1,4 @@
-//! Three grids of one case, each made of the same body.
+//! The case on three grids.
 
 use bsmpm_scene::{Case, GridAxis};
 

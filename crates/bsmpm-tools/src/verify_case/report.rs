@@ -1,4 +1,4 @@
-//! What the three grids say of each quantity, in words and figures.
+//! Reports the grid convergence of each quantity.
 
 use bsmpm_io::table::Columns;
 use serde::Serialize;

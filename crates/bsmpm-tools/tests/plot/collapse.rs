@@ -1,4 +1,4 @@
-//! A run that never was: a column of soil that slumps by a formula, in files as a real run leaves them.
+//! A synthetic run of a slumping column.
 
 use std::f64::consts::PI;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! `bsmpm compare`.
+//! Tests `bsmpm compare`.
 
 use std::fs;
 use std::path::Path;

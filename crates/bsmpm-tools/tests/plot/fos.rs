@@ -1,5 +1,4 @@
-//! `bsmpm fos`, with a stub for the solver: this test program, which writes runs of a body that bends at a known
-//! factor.
+//! Tests `bsmpm fos` with a stub solver.
 
 mod trials;
 

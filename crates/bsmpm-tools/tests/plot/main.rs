@@ -1,4 +1,4 @@
-//! `bsmpm plot`, `bsmpm compare`, `bsmpm validate` and `bsmpm fos` on runs that never were.
+//! Tests `bsmpm plot`, `compare`, `validate` and `fos` on synthetic runs.
 
 mod collapse;
 mod compare;

@@ -1,4 +1,4 @@
-//! `bsmpm plot` on scenes without inertia.
+//! Tests `bsmpm plot` on quasi-static runs.
 
 use std::fs;
 

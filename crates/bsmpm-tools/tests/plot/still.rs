@@ -1,4 +1,4 @@
-//! Quasi-static runs that never were: a slope that slides and a footing that sinks, by formulas.
+//! Synthetic quasi-static runs of a slope and a footing.
 
 use std::path::Path;
 

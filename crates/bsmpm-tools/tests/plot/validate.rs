@@ -1,4 +1,4 @@
-//! `bsmpm validate`, with a stub for the solver: it hands out a run that was made before.
+//! Tests `bsmpm validate` with a stub solver.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;

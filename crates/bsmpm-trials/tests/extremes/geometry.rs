@@ -1,4 +1,4 @@
-//! Where material lies in its cells, and how it moves through them (N06, N15-N17).
+//! Positions of material in its cells (N06, N15-N17).
 
 use crate::physics::scene::{Scene, axis, by_id, hencky};
 use crate::physics::solver::Skyline;

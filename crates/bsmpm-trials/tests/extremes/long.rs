@@ -1,4 +1,4 @@
-//! Long runs, and what belongs to the number of steps (N18-N21).
+//! Long runs and large numbers of steps (N18-N21).
 
 use crate::scenes::{Footing, block, layers};
 use crate::solver::Run;

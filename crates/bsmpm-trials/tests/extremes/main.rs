@@ -1,9 +1,8 @@
-//! The extremes: nearly incompressible and cohesionless soil, tiny and huge steps, points on knots, long runs, other
-//! units and origins. Every row gives the right value or a clean refusal, or is printed as failing.
+//! Extreme cases: each row gives the right value or a clean refusal, or is printed as failing.
 //!
-//! `rows` declares them, one below the other, with their bounds and what is known to fail; `table` judges and prints;
-//! the others measure: on the physics alone, with a solver of one rank that needs no PETSc, or through the real
-//! program. Without `--short` or `--full`, as `cargo test` calls it, only the declaration itself is looked through.
+//! `rows` declares the rows with their bounds and known failures; `table` judges and prints; the other files measure,
+//! on the physics alone or through the program. `cargo test` checks the declaration only; `--short` and `--full` run
+//! the rows.
 
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 

@@ -1,4 +1,4 @@
-//! One point of material at the extremes of strain, strength and stiffness (N02-N05, N17, N25).
+//! One material point at extreme strain, strength and stiffness (N02-N05, N17, N25).
 
 use crate::physics::random::Random;
 use crate::physics::scene::hencky;

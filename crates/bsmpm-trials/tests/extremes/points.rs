@@ -1,4 +1,4 @@
-//! Points per cell: one, none after a stretch, and very many (N07, N08).
+//! Few and many points per cell (N07, N08).
 
 use crate::physics::scene::{Scene, axis, hencky};
 use crate::scenes::{Collapse, Footing};

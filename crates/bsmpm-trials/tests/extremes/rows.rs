@@ -1,5 +1,4 @@
-//! Every row of the extremes: its number in the project's list, what is measured, what it may be, and what is known to
-//! fail.
+//! All rows of the extremes: number, measurement, bounds, known failures.
 
 use crate::table::Limit::{AtMost, Reported, Same, Within};
 use crate::table::{Row, row};

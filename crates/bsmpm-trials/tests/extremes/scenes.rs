@@ -1,4 +1,4 @@
-//! The texts of the cases that rows run, in plain numbers so that they can be had in any units and at any place.
+//! Cases of the rows, in any units and at any place.
 
 /// What a metre, a kilogram and a second are, and where the origin lies (m).
 #[derive(Clone, Copy, Debug)]

@@ -1,4 +1,4 @@
-//! Runs of the real program: what they gave, or why they gave nothing.
+//! Runs of the program: results or reasons.
 
 use crate::support::results::{all_finite, history, last_frame, manifest};
 use crate::support::{Output, Scratch};

@@ -1,4 +1,4 @@
-//! Steps that are tiny, huge, or have nothing to do (N09, N10, N22-N24).
+//! Tiny, huge and idle steps (N09, N10, N22-N24).
 
 use crate::physics::random::Random;
 use crate::physics::scene::{Scene, axis, hencky};

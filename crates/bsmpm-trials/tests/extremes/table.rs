@@ -1,4 +1,4 @@
-//! A row of the extremes: what it measures, what it may give, and how it is printed.
+//! A row of the extremes, its verdict and its printing.
 
 pub use crate::support::driver::Depth;
 use crate::support::driver::{Column, Judged, Verdict, caught, first_line, number, numbers, words};

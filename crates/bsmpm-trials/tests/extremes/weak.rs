@@ -1,4 +1,4 @@
-//! Soil without cohesion, layers of very different stiffness, and gravity of any size (N02, N11, N12).
+//! Cohesionless soil, very different layers, any gravity (N02, N11, N12).
 
 use crate::physics::scene::{Scene, axis, by_id, hencky};
 use crate::scenes::{Collapse, RODS, Soil, layers};

@@ -1,5 +1,4 @@
-//! Ranks that do not see the same files: one of them has an empty folder in a place where the others have one that is
-//! full.
+//! Ranks that do not see the same files.
 
 use crate::ground::{Ground, RUN, Trial, results, same};
 use crate::support::{Ears, Output, processes, program};

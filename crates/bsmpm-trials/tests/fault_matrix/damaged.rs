@@ -1,4 +1,4 @@
-//! Checkpoints that are damaged, foreign or hostile: refused by name, passed over by `auto`.
+//! Damaged, foreign and hostile checkpoints: refused by name, skipped by `auto`.
 
 use crate::ground::{Ground, Trial, spread};
 use crate::support::{example, processes};

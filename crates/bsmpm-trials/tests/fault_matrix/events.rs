@@ -1,4 +1,4 @@
-//! What happens in the case before the faults strike: tests of restarts in which nothing happens see nothing.
+//! Events of the case before the faults, so that restarts are tested with a changing state.
 
 use crate::ground::{Ground, Trial};
 use crate::support::results::{all_frames, ids, steps};

@@ -1,4 +1,4 @@
-//! The strip footing, killed ten times, on 2, 3 and 1 ranks in turn: its pressure against the uninterrupted run's.
+//! The strip footing, killed ten times on 2, 3 and 1 ranks, against the uninterrupted run.
 
 use crate::ground::{Ground, spread};
 use crate::support::results::{history, manifest};

@@ -1,4 +1,4 @@
-//! The case of all faults, the uninterrupted runs of it, and runs that are to become equal to one of those.
+//! The case of all faults, and its uninterrupted runs.
 
 use crate::support::driver::Depth;
 use crate::support::results::{manifest, steps};

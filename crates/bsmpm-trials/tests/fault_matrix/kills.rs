@@ -1,4 +1,4 @@
-//! Processes that are killed.
+//! Killed processes.
 
 use crate::ground::{Ground, INTERVAL, spread};
 use crate::support::Running;

@@ -1,9 +1,8 @@
-//! The faults: killed ranks, full disks, damaged checkpoints, signals, other ranks. After every one of them a run goes
-//! on to the end that it would have had, or says why not.
+//! Faults: killed ranks, full disks, damaged checkpoints, signals, other ranks. After each, a run continues to the end
+//! that it would have had, or says why not.
 //!
-//! `rows` declares them, one below the other, with how often they are tried; `ground` has the case and what "to the
-//! bit" means; `table` judges; the others bring the faults about. Without `--short` or `--full`, as `cargo test` calls
-//! it, only the declaration itself is looked through.
+//! `rows` declares them, `ground` has the case, `table` judges, and the other files cause the faults. `cargo test`
+//! checks the declaration only; `--short` and `--full` run the rows.
 
 mod apart;
 mod damaged;

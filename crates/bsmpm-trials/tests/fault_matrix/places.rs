@@ -1,4 +1,4 @@
-//! Where a run writes, and what it finds there: no permission, other runs, locks; and what it runs on.
+//! Output places: permissions, other runs, locks, hosts.
 
 use crate::ground::{Ground, RUN, results, same};
 use crate::support::cases::{SLIDING_BLOCK, changed};

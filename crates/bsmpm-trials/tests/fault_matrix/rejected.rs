@@ -1,4 +1,4 @@
-//! Steps that converge, are rejected on purpose and made again: an attempt that is given up leaves no trace.
+//! Converged steps that are rejected on purpose and repeated without a trace.
 
 use crate::ground::{Ground, results, same};
 use crate::restart::{cases, left};

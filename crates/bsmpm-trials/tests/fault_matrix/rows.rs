@@ -1,4 +1,4 @@
-//! Every row of the faults: its number in the project's list, how it is brought about, and how often: `[short, full]`.
+//! All rows of the faults: number, cause, and repetitions `[short, full]`.
 
 use crate::table::{Row, row};
 use crate::{apart, damaged, events, footing, kills, places, rejected, restart, signals, solver, writing};

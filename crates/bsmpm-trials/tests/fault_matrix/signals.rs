@@ -1,4 +1,4 @@
-//! Signals and limits of time: the run stops with all that it has made, and goes on as if nothing had been.
+//! Signals and time limits: the run stops without loss and continues.
 
 use crate::ground::{Ground, INTERVAL, results, same, spread};
 use crate::support::Running;

@@ -1,5 +1,4 @@
-//! Steps that the solver cannot make: linear solves that diverge, material that turns inside out. Each is a reason of
-//! its own, leads to shorter steps, and is never accepted.
+//! Steps that the solver cannot make: each reason leads to shorter steps, and none is accepted.
 
 use crate::ground::{Ground, RUN};
 use crate::support::Scratch;

@@ -1,4 +1,4 @@
-//! A row of the faults: how often it is tried, and how it is judged and printed.
+//! A row of the faults, its verdict and its printing.
 
 use crate::ground::Ground;
 use crate::support::driver::{Column, Depth, Judged, Verdict, caught, first_line, number, numbers, words};

@@ -1,4 +1,4 @@
-//! Checkpoints while they are written: order on the disk, full disks, slow disks, a writer that is killed all the time.
+//! Checkpoints while they are written: order on the disk, full and slow disks, killed writers.
 
 use crate::ground::{Ground, INTERVAL, RUN, Trial, results, same, same_but_for_frames, spread};
 use crate::support::results::manifest;

@@ -1,4 +1,4 @@
-//! Upper bounds of scenes of `cases/`, by [`super::slips`].
+//! Upper bounds of limit loads, by [`super::slips`].
 
 use super::slips::{Edge, Ground};
 use std::f64::consts::PI;

@@ -1,4 +1,4 @@
-//! Small cases, as text.
+//! Texts of small cases.
 
 /// An elastic block slides over a smooth floor, four cells far: it needs no case of its own to migrate.
 pub const SLIDING_BLOCK: &str = r#"title    = "Elastic block that slides and sags"

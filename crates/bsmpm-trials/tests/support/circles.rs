@@ -1,5 +1,4 @@
-//! Slips along circles, to compare with. Without friction a circle turns as a rigid body, and what it carries is an
-//! upper bound of the truth; with friction Bishop's simplified method (Bishop, 1955) is no bound.
+//! Factors of safety of slip circles; with friction by Bishop's simplified method (1955).
 
 /// A fill with a straight slope on level clay whose strength grows with depth; m, Pa, N/m3, degrees.
 pub struct Embankment {

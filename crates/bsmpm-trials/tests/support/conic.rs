@@ -1,5 +1,4 @@
-//! Conic programs in the words of those who state them: sums of variables that are to be zero, no less than zero, or in
-//! a second-order cone. Clarabel (Goulart and Chen, 2024) solves them.
+//! Solves second-order cone programs with Clarabel (Goulart and Chen, 2024).
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::{NonnegativeConeT, SecondOrderConeT, ZeroConeT};

@@ -1,4 +1,4 @@
-//! Tables of measured rows: picks them, prints each as soon as it is there, counts, and keeps a copy for documents.
+//! Selects, runs and prints the rows of a table.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;

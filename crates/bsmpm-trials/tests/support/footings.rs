@@ -1,4 +1,4 @@
-//! Ground under bodies that go down, for [`super::limit_analysis`].
+//! Ground below footings, for [`super::limit_analysis`].
 
 use super::limit_analysis::{Face, Mesh};
 use std::collections::BTreeMap;

@@ -1,11 +1,8 @@
-//! Bounds of the force with which a rigid body that goes down makes weightless clay without drainage (Tresca) fail, in
-//! the round or in plane strain: finite elements (Sloan, 1988 and 1989) in second-order cones (Makrodimopoulos and
-//! Martin, 2006 and 2007).
+//! Strict bounds of the limit load of a footing on Tresca clay, by finite-element limit analysis (Sloan, 1988 and 1989;
+//! Makrodimopoulos and Martin, 2006 and 2007).
 //!
-//! In the round, r times the stresses in the section and r^2 times the strain rates are linear in every triangle. Those
-//! are chosen so, S = r sigma, with dS_r/dr + dT/dz = sigma_theta and dT/dr + dS_z/dz = 0; these follow from a stream
-//! function that is quadratic in every triangle, u = psi_z/r, w = -psi_r/r, which keeps the volume. Yield is convex,
-//! so that corners decide for their triangle. Both bounds are strict, the lower one up to the solver's tolerance.
+//! In axisymmetry S = r sigma and T = r tau are linear in each triangle: dS_r/dr + dT/dz = sigma_theta and dT/dr +
+//! dS_z/dz = 0. The velocities are u = psi_z/r and w = -psi_r/r with a quadratic stream function psi.
 
 use super::conic::{Program, Sum};
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Runs the real program under mpirun, in a scratch directory of its own, and looks at what it left.
+//! Runs the program in a scratch directory, and reads its results.
 
 #![allow(dead_code)] // every test program takes its part of this
 

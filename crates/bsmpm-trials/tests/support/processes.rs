@@ -1,4 +1,4 @@
-//! One run at a time unless a test wants more, in a process group of its own, which never outlives its test.
+//! Runs processes in turn, each in a process group.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};

@@ -1,4 +1,4 @@
-//! What a run left in its output directory.
+//! Reads an output directory.
 
 use bsmpm_io::frame::{FieldValues, Frame};
 use bsmpm_io::manifest::Manifest;

@@ -1,6 +1,4 @@
-//! Upper bounds of what clay without drainage carries in plane strain: the cheapest mechanism of blocks that slide
-//! along lines between nodes, any two of which may bound a slip, whatever it crosses (translational discontinuity
-//! layout optimisation: Smith and Gilbert, 2007, Proc. R. Soc. A 463, 2461-2484). A linear program.
+//! Upper bounds for undrained clay, by discontinuity layout optimisation (Smith and Gilbert, 2007).
 
 use super::conic::{Program, Sum};
 

@@ -1,4 +1,4 @@
-//! Bodies of revolution: histories of the whole circle, the same on any number of ranks and over restarts.
+//! Tests axisymmetric runs.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

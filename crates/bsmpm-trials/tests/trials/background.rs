@@ -1,4 +1,4 @@
-//! The indicators of the soft background: an alarm where a function creeps by it, and none where the answer is right.
+//! Tests indicators of the soft background stiffness.
 
 use crate::support::cases::{changed, slope};
 use crate::support::results::manifest;

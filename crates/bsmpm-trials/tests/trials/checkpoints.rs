@@ -1,4 +1,4 @@
-//! Checkpoint files by real ranks: read back to the bit on any number of them, whenever a writer was killed.
+//! Tests checkpoint files of several ranks and of killed writers.
 
 use crate::support::processes::{self, Output};
 use crate::support::{Scratch, entries, example};

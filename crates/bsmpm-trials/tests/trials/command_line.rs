@@ -1,4 +1,4 @@
-//! What the program takes and refuses, how it says so, and with which exit code.
+//! Tests arguments, refusals and exit codes.
 
 mod bad_cases;
 mod directory;

@@ -1,6 +1,4 @@
-//! Water that flows by the real binary: Terzaghi's column, drained at a face of the grid or at the surface of a body
-//! within a cell; ranks agree, and a run that was cut in two goes on to the bit. And nearly incompressible material as
-//! undrained soil: a smooth pressure, in a part of the iterations.
+//! Tests consolidation and undrained soil.
 
 use crate::support::cases::changed;
 use crate::support::results::{at, history, last_frame, manifest};

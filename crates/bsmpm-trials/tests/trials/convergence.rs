@@ -1,4 +1,4 @@
-//! What is accepted as converged, what is not, and what is reported of it.
+//! Tests convergence criteria, and reports of failed steps.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

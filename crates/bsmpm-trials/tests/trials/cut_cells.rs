@@ -1,5 +1,4 @@
-//! Cells that the surface cuts: results do not depend on where it cuts them, nor on the number of load steps, ranks or
-//! restarts.
+//! Tests cut cells: independence of cut, load steps and ranks.
 
 use crate::support::Scratch;
 use crate::support::cases::{changed, slope};

@@ -1,5 +1,4 @@
-//! The history of energy on the real program: it closes, on one rank and on two, with strips, loads and numerical
-//! damping.
+//! Tests that the energy balance closes.
 
 use crate::support::results::history;
 use crate::support::{Scratch, shipped};

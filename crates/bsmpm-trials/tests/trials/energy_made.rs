@@ -1,5 +1,4 @@
-//! A run that makes energy ends with code 80 and says so, on any number of ranks, also one that goes on from a
-//! checkpoint.
+//! Tests that a run that creates energy ends with exit code 80.
 
 use crate::support::results::{history, manifest};
 use crate::support::{Scratch, shipped};

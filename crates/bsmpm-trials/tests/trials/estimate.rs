@@ -1,4 +1,4 @@
-//! `bsmpm estimate` with this program, of a case that has run.
+//! Compares `bsmpm estimate` with runs.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `bsmpm fos` of cases with rigid bodies: closed forms, and the same held by a face of the grid.
+//! Tests `bsmpm fos` with rigid bodies.
 
 use super::factor_of_safety::{estimate, of_stage};
 use serde_json::Value;

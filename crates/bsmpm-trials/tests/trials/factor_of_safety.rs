@@ -1,4 +1,4 @@
-//! `bsmpm fos` with this program: the coarsest slope that still has a mechanism.
+//! Tests `bsmpm fos` on a coarse slope.
 
 use crate::support::bounds::pit;
 use crate::support::cases::slope;

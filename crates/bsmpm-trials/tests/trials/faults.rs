@@ -1,4 +1,4 @@
-//! Whatever fails on whichever rank: the job ends by itself, with the code and the message, and leaves what is good.
+//! Tests that a failure on any rank ends the job.
 
 use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed};
 use crate::support::results::{all_finite, all_frames, history, manifest, steps};

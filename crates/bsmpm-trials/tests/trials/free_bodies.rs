@@ -1,4 +1,4 @@
-//! Rigid bodies that move freely: friction on ground that spreads, oscillation, and bodies that meet each other.
+//! Tests freely moving rigid bodies.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

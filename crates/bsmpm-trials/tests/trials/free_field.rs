@@ -1,4 +1,4 @@
-//! Sides beside a free field: the same on any number of ranks and over restarts, and the run says what it refuses.
+//! Tests free-field boundaries.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

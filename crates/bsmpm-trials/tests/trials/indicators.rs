@@ -1,5 +1,4 @@
-//! The indicators of real runs: the same on any number of ranks, of what the scene contains, and outside their usual
-//! range for methods that are known to be bad.
+//! Tests indicators on several ranks and with inaccurate methods.
 
 use crate::support::cases::{SLIDING_BLOCK, slope};
 use crate::support::results::manifest;
@@ -102,8 +101,8 @@ fn one_point_a_cell_is_reported_at_the_end() {
     assert!(codes == 1 && good.stderr.contains("warning I0023: "), "four cells across the footing: {}", good.stderr);
 }
 
-/// `cases/results/strip_footing.md`: noise of 13.4 (`none`), 1.46 (`f-bar`), 0.38 and 0.31 (`modified-f-bar`,
-/// `consistent-f-bar`); with smaller cells 0.16. Where Poisson's ratio is 0.499 `cases/results/stabilisation.md` has
+/// The strip footing of the paper: noise of 13.4 (`none`), 1.46 (`f-bar`), 0.38 and 0.31 (`modified-f-bar`,
+/// `consistent-f-bar`); with smaller cells 0.16. Where Poisson's ratio is 0.499 it is
 /// 0.476 with `consistent-f-bar`, 0.277 as undrained soil.
 #[test]
 fn the_advice_against_noise_is_not_the_method_in_use() {

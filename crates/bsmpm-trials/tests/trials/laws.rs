@@ -1,5 +1,4 @@
-//! Laws whose state goes on from step to step, in the round and in space: the same over restarts, and a slice of them
-//! is plane strain. Each law stands in one quarter of a block that slumps, so that one run has all.
+//! Tests constitutive laws with state variables.
 
 use crate::support::Scratch;
 use crate::support::results::{at, history, ids, last_frame};

@@ -1,4 +1,4 @@
-//! Ground that is loaded by what stages place on it, and drained by what they begin and end.
+//! Tests the consolidation of ground that stages load.
 
 use crate::stages::repeats;
 use crate::support::Scratch;

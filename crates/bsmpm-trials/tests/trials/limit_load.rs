@@ -1,4 +1,4 @@
-//! `bsmpm limit-load` beside exact limit loads, and runs of cases that seek one on several ranks and over restarts.
+//! Compares `bsmpm limit-load` with exact limit loads.
 
 use crate::support::cases::EXACT;
 use crate::support::results::{agree, manifest};

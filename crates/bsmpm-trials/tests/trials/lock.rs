@@ -1,4 +1,4 @@
-//! The lock of the output directory: of all runs that want it one has it, and a dead one's is taken over.
+//! Tests the lock of the output directory.
 
 use crate::support::cases::endless;
 use crate::support::results::{history, manifest};

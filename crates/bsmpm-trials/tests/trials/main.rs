@@ -1,5 +1,4 @@
-//! The programs from outside, a file for each of what is tried. One test program: each by itself would be linked with
-//! the same crates again.
+//! Tests of the programs, with a file for each subject.
 
 mod axisymmetric;
 mod background;

@@ -1,4 +1,4 @@
-//! Strips that meet and move differently: limit loads, forces in balance, ranks and restarts, and what is refused.
+//! Tests adjacent footings and segments with different displacements.
 
 use crate::support::Scratch;
 use crate::support::cases::{EXACT, changed};

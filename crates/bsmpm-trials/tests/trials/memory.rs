@@ -1,4 +1,4 @@
-//! The estimate by which a case is refused against the memory that its run takes (rows F37, I20).
+//! Compares memory estimates with runs (rows F37, I20).
 
 use crate::support::results::manifest;
 use crate::support::{Scratch, shipped};

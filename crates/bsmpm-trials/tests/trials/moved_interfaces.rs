@@ -1,4 +1,4 @@
-//! Interfaces that leave the grid lines on which they were: what the run reports, and how wrong stress and flow are.
+//! Tests material interfaces that have left their grid lines.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

@@ -1,5 +1,4 @@
-//! What is reported of parts, lines and places: the closed forms of a column at rest, the same on any number of ranks
-//! and however a run is cut.
+//! Compares histories with closed forms.
 
 use crate::support::Scratch;
 use crate::support::results::{all_finite, at, differences, history, last_frame, manifest};

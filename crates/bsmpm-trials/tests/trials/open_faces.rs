@@ -1,4 +1,4 @@
-//! Faces that let waves or material out: counted, the same on any number of ranks and over restarts.
+//! Tests absorbing and outflow boundaries.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

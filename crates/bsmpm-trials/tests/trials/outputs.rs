@@ -1,4 +1,4 @@
-//! What a run leaves: tables, frames and the manifest, complete and true.
+//! Tests tables, frames and manifest of a run.
 
 use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed};
 use crate::support::results::{all_finite, all_frames, at, history, ids, manifest, steps};

@@ -1,5 +1,4 @@
-//! Pseudo-static analyses: gravity with a horizontal part, water and stress at the start by its vertical part, and the
-//! critical seismic coefficient.
+//! Tests pseudo-static analyses, and the critical seismic coefficient.
 
 use super::factor_of_safety::searched;
 use crate::support::Scratch;

@@ -1,4 +1,4 @@
-//! The number of ranks changes nothing but the time that a run takes.
+//! Tests that the number of ranks does not change results.
 
 use crate::support::cases::{SLIDING_BLOCK, changed, frictional_block, pressed_block};
 use crate::support::results::{all_frames, differences, history, ids, last_frame, manifest, steps};

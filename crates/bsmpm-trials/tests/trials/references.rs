@@ -1,4 +1,4 @@
-//! Scenes of `cases/`, coarse, against closed forms, bounds and laws of motion.
+//! Compares coarse versions of shipped cases with closed forms and bounds.
 
 use crate::support::bounds::{pipe, plate, strip};
 use crate::support::circles::strip_on_two_clays;

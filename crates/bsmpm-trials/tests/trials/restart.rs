@@ -1,4 +1,4 @@
-//! Going on from checkpoints: on as many ranks to the bit, on others within tolerances, and never with another case.
+//! Tests restarts, which repeat bitwise on the same ranks.
 
 use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed, frictional_block, pressed_block};
 use crate::support::results::{all_frames, differences, history, last_frame, manifest, steps};

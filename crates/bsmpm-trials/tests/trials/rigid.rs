@@ -1,5 +1,4 @@
-//! Rigid bodies: the same on any number of ranks and over restarts, what is reported of them, and the thrust of sand on
-//! a wall.
+//! Tests rigid bodies, and the thrust of sand on a wall.
 
 use crate::support::cases::changed;
 use crate::support::results::{at, history, manifest};

@@ -1,5 +1,4 @@
-//! Only the part of the grid around the points is held: how large the grid is changes neither results nor what they
-//! take.
+//! Tests that the size of the grid changes neither results nor cost.
 
 use crate::support::cases::{SLIDING_BLOCK, changed};
 use crate::support::results::manifest;

@@ -1,4 +1,4 @@
-//! Run-outs of dense granular flow on a fixed bed, and the velocities of the material points next to it.
+//! Tests run-outs of dense granular flow.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

@@ -1,5 +1,4 @@
-//! A saturated column with inertia by the real binary: waves that the water damps (telegraph equation); ranks agree,
-//! and a run that was cut in two goes on to the bit.
+//! Compares waves in a saturated column with the telegraph equation.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

@@ -1,5 +1,4 @@
-//! The scenes of geotechnics on the real program: strips, loads, layers and stress at the start, on any number of
-//! ranks.
+//! Tests footings, loads, layers and initial stress on several ranks.
 
 use crate::support::cases::{SLIDING_BLOCK, changed};
 use crate::support::results::{all_finite, at, differences, history, last_frame, manifest};
@@ -221,7 +220,7 @@ fn the_footing_on_clay_is_the_same_on_1_2_3_and_4_ranks() {
     assert!(pressures.iter().all(|pressure| (pressure / pressures[0] - 1.0).abs() < 1e-6), "{pressures:?}");
 }
 
-/// The draft preset's graded cells against the paper's discretisation: `cases/results/strip_footing.md`.
+/// The draft preset's graded cells against the paper's discretisation.
 #[test]
 fn a_draft_of_the_footing_is_within_a_tenth_for_a_four_hundredth_of_the_work() {
     let (case, scratch) = (shipped("presets/strip_footing.toml"), Scratch::new());
@@ -256,7 +255,7 @@ fn a_weaker_slope_moves_more() {
         scratch.mpirun(2, &[&arguments[..], &paper[..]].concat()).expect(0);
         *history(&scratch.path("slope.out")).get("E_delta_over_gamma_H2").unwrap().last().unwrap()
     });
-    // method.md 7: 0.3874 and 0.589 with another quasi-Newton method, and without extended splines. With them 0.571, as
+    // Measured before: 0.3874 and 0.589 with another quasi-Newton method, and without extended splines. With them 0.571, as
     // the surface's cells are a little stiffer.
     assert!((moved[0] - 0.387).abs() < 0.002 && (moved[1] - 0.571).abs() < 0.01, "{moved:?}");
 }

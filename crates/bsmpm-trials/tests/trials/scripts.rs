@@ -1,4 +1,4 @@
-//! The scripts from outside, with programs of the system replaced.
+//! Tests the scripts, with stubs for system programs.
 
 use crate::support::Scratch;
 use crate::support::cases::endless;

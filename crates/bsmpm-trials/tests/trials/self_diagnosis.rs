@@ -1,5 +1,4 @@
-//! What a run reports of itself that nobody asked for: what holds it pulls, the background carries it, its front goes
-//! back; and what every such line says to do.
+//! Tests warnings of a run about its result.
 
 use crate::support::cases::changed;
 use crate::support::results::{at, history, manifest};

@@ -1,5 +1,4 @@
-//! Stress at the start that is led to equilibrium: what must stay stays, nothing moves by it, and the run is the same
-//! however it is cut.
+//! Tests initial stresses in plastic equilibrium.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

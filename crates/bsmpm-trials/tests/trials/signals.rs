@@ -1,4 +1,4 @@
-//! Signals: whichever process they reach, all ranks stop at one state, or go on as if nothing had been.
+//! Tests that a signal to any process stops all ranks.
 
 use crate::support::cases::{COLUMN, endless, long_step};
 use crate::support::results::{all_finite, all_frames, history, last_frame, manifest, steps};

@@ -1,5 +1,4 @@
-//! Three dimensions by the real binary: a slice is plane strain, a box weighs what it weighs, a cylinder is the same on
-//! any number of ranks and over restarts.
+//! Tests 3-D runs, and slices against plane strain.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;
@@ -78,8 +77,8 @@ fn layered(case: &str) -> String {
         )
 }
 
-/// F-bar's exponent is 1/2 in plane strain and 1/3 in space: two discretisations of the same body, which differ by as
-/// much as `cases/results/solid.md` says: most across the slice, where a solid's F-bar stretches too and a plane's does
+/// F-bar's exponent is 1/2 in plane strain and 1/3 in space: two discretisations of the same body, which differ by most
+/// across the slice, where a solid's F-bar stretches too and a plane's does
 /// not.
 #[test]
 fn a_slice_between_rollers_is_plane_strain_but_for_f_bars_exponent() {

@@ -1,4 +1,4 @@
-//! Solids on faces that push and rub, by the real binary: blocks that slide obliquely, stick, and leave.
+//! Tests frictional contact in 3-D.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

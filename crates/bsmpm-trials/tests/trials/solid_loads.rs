@@ -1,4 +1,4 @@
-//! Loads on the surfaces of solids by the real binary: against closed forms, and force against reaction.
+//! Compares surface loads in 3-D with closed forms.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

@@ -1,5 +1,4 @@
-//! What is reported of lines, places and sections in a solid: the closed forms of a block at rest and of a bar that
-//! bends and twists, the same on any number of ranks and however a run is cut.
+//! Compares histories in 3-D with closed forms.
 
 use super::observations::goes_the_same_way;
 use super::solid::{PLANE, slice};

@@ -1,5 +1,4 @@
-//! Rigid bodies in space: a slice is plane strain, a block slides on rigid terrain as Coulomb says, on any number of
-//! ranks and over restarts.
+//! Tests rigid bodies and rigid terrain in 3-D.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

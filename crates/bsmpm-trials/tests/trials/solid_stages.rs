@@ -1,4 +1,4 @@
-//! Stages, ground that shakes, faces that let material out and bodies that spin, in space.
+//! Tests stages, shaking, outflow and spinning bodies in 3-D.
 
 use crate::solid::{PLANE, slice};
 use crate::stages::{SWITCHED, repeats};

@@ -1,5 +1,4 @@
-//! Water in three dimensions by the real binary: slices are plane strain, ground under water rests, a cube that is
-//! drained on six sides, ranks and restarts.
+//! Tests water in 3-D.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

@@ -1,4 +1,4 @@
-//! Stages: what is removed and placed leaves what closed forms say, and the run is the same however it is cut.
+//! Compares stages with closed forms.
 
 use crate::support::cases::{SLIDING_BLOCK, changed};
 use crate::support::results::{agree, at, history, last_frame, manifest};

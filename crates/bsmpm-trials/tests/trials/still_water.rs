@@ -1,5 +1,4 @@
-//! Still water by the real binary: level and sloping ground below it is in equilibrium as ground of buoyant weight, a
-//! level may fall, and runs go on to the bit.
+//! Tests hydrostatic water.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

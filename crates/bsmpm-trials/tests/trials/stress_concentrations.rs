@@ -1,4 +1,4 @@
-//! Stress at the edge of holes: by the presets, and by the number of cells across the hole.
+//! Tests the stress at the edge of holes.
 
 use crate::support::Scratch;
 use crate::support::results::manifest;
@@ -103,8 +103,8 @@ fn knots(across: f64, first: f64) -> String {
     format!("grid.knots={{ x = {knots:?}, y = {knots:?} }}")
 }
 
-/// The table of `crates/bsmpm-scene/src/preset.md`: the error at the crown for a hole whose edge lies at four places in
-/// its cell. From 6 cells across with 3 points along an axis of a cell, and from 8 with 2, its RMS is below 10 %.
+/// Prints the error at the crown for a hole whose edge lies at four places in its cell (chapter 11 of the theory
+/// manual). From 6 cells across with 3 points along an axis of a cell, and from 8 with 2, its RMS is below 10 %.
 #[test]
 fn enough_cells_across_a_hole_find_the_stress_at_its_edge() {
     let scratch = Scratch::with_case(PLATE);

@@ -1,4 +1,4 @@
-//! Strips that rub and let go on the real program, and the histories of strips by name.
+//! Tests footings and segments with friction and separation.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

@@ -1,4 +1,4 @@
-//! `bsmpm sweep` and `bsmpm verify-case` with this program, on the first milliseconds of the coarse column.
+//! Tests `bsmpm sweep` and `bsmpm verify-case`.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;

@@ -1,5 +1,4 @@
-//! Ground that has drained, and is then loaded so fast that it does not: by its water, or by a law of total stress; and
-//! ground that is relieved of what lay on it.
+//! Tests fast loading of drained ground in stages.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

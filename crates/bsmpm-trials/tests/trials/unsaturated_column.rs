@@ -1,5 +1,4 @@
-//! A column that drains by its own weight (Liakopoulos 1965), with a measured retention curve: pressures, outflow and
-//! settlement of the real binary beside the same equations by lines, at small strain.
+//! Tests a column that drains under its weight (Liakopoulos, 1965).
 
 use crate::support::results::{at, history};
 use crate::support::{Scratch, shipped};

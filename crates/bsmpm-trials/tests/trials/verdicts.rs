@@ -1,4 +1,4 @@
-//! Indicators beyond their limits end a run with a code of its own, unless the case accepts them.
+//! Tests that indicators beyond their limits end a run with exit code 82.
 
 use crate::support::Scratch;
 use crate::support::cases::slope;

@@ -1,5 +1,4 @@
-//! Coulomb's friction on faces of the grid acts on the effective normal force: with pore pressure as a part `ru` of the
-//! weight above.
+//! Tests that friction acts on the effective normal force (`ru`).
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

@@ -1,5 +1,4 @@
-//! Slopes with water in them by the real binary: factors of safety of an infinite slope by what its points carry, and
-//! of a slope under a level of water.
+//! Tests factors of safety of slopes with water.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The strain form of the background over a cell, exact: products of one-dimensional integrals.
+//! Stiffness matrices of the soft background (T2.13) for single cells.
 
 use super::integrals::{FormProducts, Integrals};
 use super::tensor::TensorForms;

@@ -1,4 +1,4 @@
-//! Integrals of products of splines along the axes, whose products over the axes are the background's form.
+//! Integrals of products of one-dimensional splines, for the background's stiffness (T2.13).
 
 use crate::gauss::GAUSS;
 use crate::grid::shape::with_width;

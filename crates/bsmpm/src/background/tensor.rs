@@ -1,8 +1,4 @@
-//! The strain form of cells in space, by one axis after another, eight cells at a time.
-//!
-//! In a graded grid no two cells have the same block. With quadratic splines each has 81² numbers, which every
-//! evaluation would read from memory; products of the integrals along the axes need 108 numbers of a cell and half of
-//! the operations.
+//! Product with the background's stiffness (T2.13) in three dimensions, axis by axis, for eight cells at a time.
 
 use super::integrals::{Integrals, KINDS};
 use crate::grid::shape::with_width;

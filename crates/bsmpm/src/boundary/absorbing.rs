@@ -1,5 +1,5 @@
-//! Faces that let waves out: dashpots of the material's own impedance beside what holds the state of the start.
-#![doc = include_str!("absorbing.md")]
+//! Absorbing faces: nodal dashpots and static forces, part of the residual and the stiffness (T6.11) to (T6.13),
+//! (T6.15).
 
 use super::contact::face_cell;
 use super::{Boundary, Support};

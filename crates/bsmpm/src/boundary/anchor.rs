@@ -1,9 +1,4 @@
-//! The material that surface points are anchored to: `x_s = x_p + F_p (X_s - X_p)`, p the point that is nearest at the
-//! start.
-//!
-//! Points that moved with the nodes instead would lag behind where rows of cells empty: on a column compressed by 30 %
-//! a load would come to lie 0.013 m of 0.70 m below the surface. And it reports where a strip has let go of its
-//! material.
+//! Anchors of surface points to the nearest material points, which move them after each step (T6.4).
 
 use super::strip::{Strip, displacement, reduce};
 use super::surface::{Anchors, SurfacePoint};

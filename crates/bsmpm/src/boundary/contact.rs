@@ -1,5 +1,5 @@
-//! Faces that push and rub but do not pull: unilateral contact with Coulomb friction, node by node.
-#![doc = include_str!("contact.md")]
+//! Frictional contact at the faces of the grid, node by node (T7.1) to (T7.4).
+//! [`solve::contact`](crate::solve::contact) corrects the contact statuses.
 
 mod gap;
 mod neutral;

@@ -1,4 +1,4 @@
-//! Unilateral contact with Coulomb's friction, whatever has it: its law, its statuses, what is reported of it.
+//! Coulomb's friction law, contact statuses and contact reports (T7.1), (T7.2).
 
 use crate::tensor::Vector;
 

@@ -1,7 +1,5 @@
-//! Tractions and point loads: forces on points of the body's surface that move with the body.
-//!
-//! A dead load keeps force and direction. A pressure turns and stretches with the surface (see
-//! [`follower`]).
+//! Tractions and point loads: dead loads (T6.8), added to the external force at the start of a step, and [follower
+//! loads](follower).
 
 pub mod follower;
 

@@ -1,6 +1,5 @@
-//! Rigid bodies of any polygon, circles, and in space simple shapes and terrain, that push and rub the material
-//! points at them and do not pull.
-#![doc = include_str!("rigid.md")]
+//! Rigid bodies and terrain in frictional contact with material points (T7.7) to (T7.10). Contacts are detected at the
+//! start of a step; [`solve::contact`](crate::solve::contact) corrects their statuses.
 
 mod body;
 mod extent;
@@ -30,7 +29,8 @@ use nalgebra::Matrix3;
 use point::RigidPoint;
 
 /// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia: with ten times as much
-/// steps in plastic failure find no equilibrium, as there are more points than splines there (measured in `rigid.md`).
+/// steps in plastic failure find no equilibrium, as there are more points than splines there
+/// (measured: `decisions.md` of the manual).
 const PENALTY: f64 = 1e2;
 /// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are: in
 /// a plane, and in space, where friction turns in them too, with inertia and without.

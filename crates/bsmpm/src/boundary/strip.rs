@@ -1,18 +1,10 @@
-//! Rigid strips (section 3.3): footings, platens and clamps that move on a given path and hold the material at them.
+//! Rigid footings and prescribed segments (`Strip`): a penalty with a traction that is carried from step to step
+//! (T6.5), (T6.6). A [`StripContact`] permits sliding and separation (T7.5), (T7.6).
 //!
-//! The paper holds the material by a penalty on boundary points (Cortis et al., 2018), whose slip is lost every step.
-//! Here the traction of the last step is carried on, as a multiplier: p = p(t) + beta (motion - sum N u). What has
-//! slipped in all steps together is then p / beta, so that a moderate penalty does. The hold is bilateral, unless the
-//! strip has a [contact](StripContact).
+//! # Adjacent footings
 //!
-//! # Strips that meet
-//!
-//! Where two strips in one plane meet and move differently, a continuous displacement cannot follow both. There the
-//! prescribed motion is the spline function sum_I N_I(x) U_I, whose coefficient U_I is the motion of the strip that is
-//! nearer to the node of N_I (its Greville point), and the mean of both where they are equally near. Splines can follow
-//! it exactly: a motion that they cannot follow would be resisted by tractions that grow in every step. A point of one
-//! strip then follows the motions of both in parts ([`MotionShare`]), and its force counts for both in the same parts.
-//! So the force of a strip is the one that does work on its motion: the sum of forces at its nodes.
+//! Between adjacent footings with different motions, the prescribed displacement is a spline (T6.7). Surface points
+//! follow both motions in fixed proportions ([`MotionShare`]), and their forces are divided in the same way.
 
 mod contact;
 mod point;

@@ -1,6 +1,5 @@
-//! Points on the surface of bodies, where rigid strips hold the material and loads act on it.
-//!
-//! They are few and the same on every rank; each is worked on by the rank whose slab it lies in.
+//! Surface points of footings, loads and drains, and their attachment to nodes (T6.3). All ranks store them; the rank
+//! of the cell computes forces.
 
 use super::rigid::RigidState;
 use crate::grid::shape::with_width;

@@ -1,13 +1,5 @@
-//! What bounds the energy of a dynamic run: nothing has more than it started with and was given.
-//!
-//! In a state after any number of steps, T + E + plastic <= T0 + E0 + external: elastic energy and dissipation are
-//! never negative, so that what is moving, strained and dissipated was there at the start or is work of gravity, loads
-//! and what moves. A method whose force does not do the work of its stress makes energy all the same; no measure of the
-//! equilibrium reports, as each step is in balance.
-//!
-//! What an algorithm has lost can be made again unseen. Growth since the state with the least energy would show it
-//! (short collapse 0.009, in steps of 10 ms 0.031), but damped oscillators pass 0.05, and small blocks that a sudden
-//! force sets in motion pass 0.16 in their first steps.
+//! Energy bound of dynamic runs (T10.4): kinetic energy, elastic energy and dissipation must not exceed initial energy
+//! plus external work. Created energy that is smaller than earlier numerical losses is not detected.
 
 use super::Stored;
 use crate::error::StepError;

@@ -1,4 +1,4 @@
-//! A column whose layers of nodes are one: the seams of the physics as such a column has them, on one rank.
+//! Solution of a free-field column, whose nodes of a row share one displacement: a [`Halo`] and a band solver.
 
 use crate::error::SolveError;
 use crate::exact::Exact;

@@ -1,8 +1,5 @@
-//! What the columns of cells contribute to their nodes, each column for itself, so that sums do not depend on the cut.
-//!
-//! A layer of nodes gets contributions from q + 1 columns at most. They are added in the order of the columns,
-//! whichever rank has them: a nodal sum has the same bits on any number of ranks and threads. A column's contribution
-//! is the sum of its patches in their order, a patch's that of its points.
+//! Nodal contributions by column of cells (cells with the same index along x). They are added in a fixed order, so
+//! nodal sums are bitwise identical on any number of ranks and threads.
 
 use super::Grid;
 use crate::exact::Exact;

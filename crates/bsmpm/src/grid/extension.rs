@@ -1,20 +1,5 @@
-//! Extended B-splines: functions whose support holds too little material are continued from a well-filled cell.
-//!
-//! A spline function that reaches only into nearly empty cells ("outer") has next to no stiffness, and its forces are
-//! integrated badly. Its coefficient is therefore no unknown: it is tied to the functions of the nearest full cell, its
-//! home, so that the displacement goes on linearly beyond that cell (Höllig, Reif and Wipper, 2001, SIAM J. Numer.
-//! Anal. 39, 442-462; Höllig and Reif, 2003, for graded knots):
-//!
-//! ```text
-//! u_j = sum_i e_ij u_i,   e_ij = product over the axes of e_ij^axis,
-//! e_ij^axis = delta_ij                      where function j belongs to the home along this axis,
-//!             N_i(s) + N_i'(s) (g_j - s)    elsewhere,
-//! ```
-//!
-//! g_j the Greville abscissa of function j, s the point of the home's interval that is nearest to g_j. On any knots a
-//! linear field keeps its coefficients, so sum_i e_ij = 1 and sum_i e_ij g_i = g_j: forces and moments are conserved.
-//!
-//! This module knows the grid only. [`step::extension`](crate::step::extension) finds outer functions and applies E.
+//! Extended B-splines: weights e_ij (T2.11) and choice of the full cell to which a function is tied, for
+//! [`step::extension`](crate::step::extension).
 
 use super::{Grid, KnotVector};
 

@@ -1,4 +1,4 @@
-//! Which cells hold points, seen across the cuts between ranks: what distinguishes the inside of a body from its edge.
+//! Cells that contain material points, including those of neighbouring ranks.
 
 use super::Grid;
 use crate::parallel::Halo;

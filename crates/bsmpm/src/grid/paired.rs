@@ -1,7 +1,4 @@
-//! Splines of degree q - 1 on pairs of cells, in terms of those on the cells (one axis).
-//!
-//! Every spline on the pairs is a sum of those on the cells, B_k = sum_j r_kj b_j with r_kj >= 0 and sum_k r_kj = 1
-//! (knot insertion; Cohen, Lyche and Riesenfeld, 1980), so that sums over points need the functions on the cells only.
+//! Splines on pairs of cells as sums of splines on cells, by knot insertion (Cohen, Lyche and Riesenfeld, 1980).
 
 use super::KnotVector;
 use std::ops::Range;

@@ -1,9 +1,4 @@
-//! The part of the grid around the points: only its cells and nodes are stored, however large the grid is.
-//!
-//! A scene's grid has room for all that may come to pass; at any time most of it is empty. What is kept reaches further
-//! than the points do by what they couple with, and by a part of their own extent, so that it is seldom fitted again.
-//! Nodes that no point touches have no unknowns and add zeros to sums: under one cut results do not depend on it, to
-//! the bit.
+//! Active part of the grid: a box of cells around the material points, with a margin. Nodes are stored only there.
 
 use super::{Grid, KnotVector};
 use crate::tensor::Vector;

@@ -1,7 +1,5 @@
-//! Step (1): shape functions and topology of all points, in product form.
-//!
-//! A point keeps D one-dimensional rows of N and dN/dx instead of (q+1)^D values and gradients: as fast, with half to a
-//! tenth of the memory. The topology p2N is a cell's first node plus offsets that all cells share.
+//! Shape functions and cells of all material points at the start of a step (T2.1), (T2.2), stored per axis to save
+//! memory.
 
 pub mod merged;
 mod support;

@@ -1,11 +1,8 @@
-//! Open B-splines in one dimension (Eqs 3-6).
+//! Open B-splines in one dimension (T2.1) to (T2.3). All q + 1 functions of a cell are kept, because on a knot a
+//! function can vanish while its derivative does not.
 //!
-//! Appendix A evaluates all functions and keeps those that are not zero. Here the span is found directly and all q+1
-//! functions of the span are kept: on a knot N = 0 while dN/dx != 0, and those must not be dropped.
-//!
-//! A breakpoint of multiplicity m stands m times: there the functions have q - m continuous derivatives, and with m = q
-//! strains may jump. Between its copies lie m - 1 cells without length, which hold no point; so function `a` of cell
-//! `c` is number `c + a` whatever the multiplicities are, and all that counts nodes by cells need not know of them.
+//! A breakpoint of multiplicity m is followed by m - 1 cells of zero length. So function `a` of cell `c` has the number
+//! `c + a`.
 
 use crate::error::GridError;
 

@@ -1,8 +1,5 @@
-//! The passes between points and nodes (Eqs 1, 2 and steps 4a, 5a), patch by patch.
-//!
-//! A patch gathers its (q+1)^D nodal values once, its points work on that small block, and what they scatter is summed
-//! in a block before it is added to its column's [`Contributions`]: sums over points have one order, whatever the
-//! number of ranks and threads. Threads share the columns of cells. Nodal arrays are flat.
+//! Transfers between points and nodes (T2.4) to (T2.6), and internal nodal forces (T5.1), cell by cell. Threads share
+//! the columns of cells.
 
 mod patch;
 pub mod scalars;

@@ -1,7 +1,4 @@
-//! Equilibrium at the start with the materials' own laws: a stress that was guessed is led to it in parts, and nothing
-//! moves. A round seeks the displacement under which the laws' stress balances the loads, keeps the stress, and lets
-//! the displacement go; what the lost displacement did to the lever arms is a part in the strain of the forces of that
-//! round, and the next one mends it.
+//! Initial equilibrium with the laws of the materials. The out-of-balance force is removed in parts (T9.4).
 
 use super::{Undeformed, b_e_of, set_elastic};
 use crate::error::StepError;

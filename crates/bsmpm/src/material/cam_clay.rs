@@ -1,14 +1,5 @@
-//! Modified Cam-clay at finite strain (Roscoe and Burland, 1968; Borja and Tamagnini, 1998, Comput. Methods Appl. Mech.
-//! Engrg. 155, 73-95): clay whose stiffness and strength come from the pressure that it has seen.
-//!
-//! With P the mean Kirchhoff stress (positive in tension) and Q its deviatoric invariant, `f = Q²/M² + P (P + p_c)`,
-//! associated. Inside, `P = -p_r exp(-ε_v/κ̂)`, p_r the pressure at b_e = I, and Q = 3 μ ε_s with a μ that is constant:
-//! where it follows the pressure, an elastic law that keeps energy cannot reach the stress ratio M (at ν = 0.3 it ends
-//! at 0.83). p_c grows with the plastic compression, `p_c' = p_c exp(-Δε_v^p/(λ̂ - κ̂))`: exact in a step of any size.
-//!
-//! κ and λ are slopes of ln v over ln p of the Cauchy pressure (Butterfield, 1979, Géotechnique 29, 469-480). The
-//! formulas are of Kirchhoff's, J p, in which the slope is `κ̂ = κ/(1 - κ)`, so that the lines of a case are straight.
-//! The return is implicit, and a single number: the stress ratio at its end over M.
+//! Modified Cam-clay at finite strain (T4.14) to (T4.16), after Borja and Tamagnini (1998). κ* and λ* refer to the
+//! Cauchy pressure, κ̂ and λ̂ to the Kirchhoff pressure.
 
 use super::law::{Branch, Law, Projection, Variable, split};
 use super::{Elastic, Moduli};

@@ -1,7 +1,4 @@
-//! Drucker-Prager plasticity (de Souza Neto et al., 2008, section 8.3): a cone through or beside Mohr-Coulomb's
-//! pyramid, perfect, non-associated.
-//!
-//! The return is linear: along the deviator to the cone, or to its tip.
+//! Drucker-Prager law (T4.8), (T4.9): perfectly plastic, non-associated. The stress returns to the cone or its tip.
 
 use super::law::{Branch, FRICTIONAL, Law, Projection, Variable, frictional, reduced, split};
 use super::{Elastic, Moduli};

@@ -1,4 +1,4 @@
-//! Isotropic elasticity (section 2.2): what all laws have inside their yield surface.
+//! Isotropic elasticity between Hencky strain and Kirchhoff stress (T4.2).
 
 use crate::real::{Real, three};
 use crate::tensor::Tensor;

@@ -1,6 +1,4 @@
-//! Stiffness and strength of any law that vary linearly with depth (layers of one material, soils in the field).
-//!
-//! A point keeps the parameters of the height at which it was placed: they follow the material, not the place.
+//! Stiffness and strength that vary linearly with the initial depth of a point, for any law.
 
 use super::law::MOST_PARAMETERS;
 use super::{Elastic, Material, MaterialError, Response};

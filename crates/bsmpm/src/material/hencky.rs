@@ -1,4 +1,4 @@
-//! Hencky elasticity (section 2.2, Eqs 9 and 10): linear between logarithmic strain and Kirchhoff stress.
+//! Hencky elasticity: Kirchhoff stress linear in logarithmic strain (T4.2).
 
 use super::law::{Branch, Law, Projection};
 use super::{Elastic, Moduli};

@@ -1,4 +1,4 @@
-//! What a law is: a file beside this one that implements [`Law`], and a line in the list of `material.rs`.
+//! Interface of constitutive laws. A law is a file in this folder that implements [`Law`], and a line in `material.rs`.
 
 use super::{Elastic, Moduli};
 use crate::real::Real;

@@ -1,4 +1,4 @@
-//! How much of its strength a stress needs.
+//! Mobilised strength: the reciprocal of the strength reduction factor at which a stress reaches the yield surface.
 
 use super::Material;
 

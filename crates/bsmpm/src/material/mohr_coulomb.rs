@@ -1,7 +1,5 @@
-//! Mohr-Coulomb plasticity (section 2.2; de Souza Neto et al., 2008, Boxes 8.4 to 8.7): perfect, non-associated.
-//!
-//! With no hardening each return is linear, so all are in closed form, and region by region:
-//! face, the edges τ₁ = τ₂ (left) and τ₂ = τ₃ (right), apex. Tresca is φ = ψ = 0, which has no apex.
+//! Mohr-Coulomb and Tresca laws (T4.5) to (T4.7): perfectly plastic, non-associated. All returns have closed forms: to
+//! a face, the left edge (τ₁ = τ₂), the right edge (τ₂ = τ₃) or the apex.
 
 use super::law::{Branch, FRICTIONAL, Law, Projection, Separation, Variable, frictional, reduced};
 use super::{Elastic, Moduli};

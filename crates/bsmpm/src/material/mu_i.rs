@@ -1,8 +1,4 @@
-//! Dense granular flow, μ(I) (Jop, Forterre and Pouliquen, 2006, Nature 441, 727-730), elastic below its strength: a
-//! cone whose friction grows with the rate of shear, at constant volume.
-//!
-//! `√J₂ = μ(I) p`, `μ = μ_s + (μ_2 - μ_s)/(1 + I_0/I)`, `I = γ̇ d √(ρ_s/p)`: p the pressure, γ̇ = √(2 ε̇ᵖ : ε̇ᵖ)
-//! that of the step's end, d and ρ_s diameter and density of the grains. Outside of a step `μ = μ_s`.
+//! Dense granular flow μ(I) (T4.17), (T4.18): a cone at constant volume whose friction increases with the shear rate.
 
 use super::law::{Branch, Law, Projection, Variable, split};
 use super::{Elastic, Moduli};

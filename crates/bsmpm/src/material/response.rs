@@ -1,4 +1,4 @@
-//! What a material answers: principal values and axes (section 2.2); tensors and the tangent are formed on demand.
+//! Result of a law at one point, as principal values and axes.
 
 use super::law::Branch;
 use super::spectral::Spectrum;

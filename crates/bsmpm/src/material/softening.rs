@@ -1,14 +1,5 @@
-//! Mohr-Coulomb plasticity whose strength follows the plastic strain, from a peak to a residual one or the other way
-//! round: the strain-softening model of sensitive and overconsolidated clays and of dense sand.
-//!
-//! In the plastic strain κ, `κ̇ = √(2/3) |dev ε̇ᵖ|`, sin φ, sin ψ and c cos φ go from their first to their last values;
-//! what opens at the apex without shear takes no strength.
-//! The return is implicit: that of the pyramid at the end of the step, whose κ it makes itself. A strength that falls
-//! has no width of its own: a band of shear is as wide as two cells, and its work as large as that. The regularisation
-//! of the scene scales the strain by these (crack band: Bažant and Oh, 1983, Mater. Struct. 16, 155-177).
-//!
-//! Its cohesion may grow with the rate of plastic shear, `1 + μ_r max(0, log₁₀(γ̇ᵖ/γ̇_ref))`, γ̇ᵖ = √3 Δκ/Δt that of
-//! the step's end (Einav and Randolph, 2005, Int. J. Numer. Meth. Engng 63, 991-1016).
+//! Mohr-Coulomb law whose strength depends on plastic strain (T4.11), and optionally on the strain rate (T4.13). The
+//! case scales the softening strain by the band width (T4.12).
 
 use super::law::{Branch, Law, Projection, Variable, reduced, split};
 use super::mohr_coulomb::{Corners, Pyramid, Slopes};

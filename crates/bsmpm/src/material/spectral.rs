@@ -1,9 +1,5 @@
-//! Spectral form of b with its Hencky strains (section 2.2, Eq. 9), accurate from strains of 1e-16 to several.
-//!
-//! A Jacobi rotation makes a pair of axes principal; it resolves nearly equal eigenvalues without a branch. One is
-//! exact when z is a principal axis (plane strain, axisymmetry); otherwise the axis of the most distinct eigenvalue
-//! comes first ([`solid`]). Eigenvalues are given as a number near them plus a small gain; the logarithm uses both,
-//! so the digits that their sum would round away are not lost near b = I.
+//! Eigenvalues and axes of the trial tensor b, and its Hencky strains (T4.1). Eigenvalues are stored as a nearby number
+//! plus a difference, to keep accuracy near b = I.
 
 mod solid;
 

@@ -1,6 +1,5 @@
-//! A symmetric, positive stand-in for the tangent of a response, for the stiffness that is factorised once a step: bulk
-//! stiffness and shear as they are, their coupling left out, the deviatoric rest without its negative part (Higham,
-//! 1988, Linear Algebra Appl. 103, 103-118), and a small share of the elastic stiffness everywhere.
+//! Symmetric positive definite approximation of the tangent of a yielding point (T5.7), for the factorised stiffness
+//! (Higham, 1988).
 
 use super::Response;
 use super::law::Branch;
@@ -9,8 +8,8 @@ use crate::kinematics::Gradient;
 use crate::tensor::Tensor;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Share of the elastic stiffness. Less takes fewer iterations where steps are small, and more where they are large:
-/// measured in `cases/results/nonlinear_methods.md`.
+/// Share of the elastic stiffness. Less takes fewer iterations where steps are small, and more where they are large (decisions of the
+/// manual, 2026-11-21).
 const ELASTIC: f64 = 0.1;
 /// Plastic strain of a response below which it counts as elastic: what rests on the yield surface is beyond it by
 /// round-off or not, and the stiffness should not depend on that.

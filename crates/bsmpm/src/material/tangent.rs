@@ -1,6 +1,4 @@
-//! The consistent spatial tangent (section 2.2; de Souza Neto et al., 2008, sections 8.2.3 and 14.5).
-//!
-//! It linearises τ(b_trial) only; the term τ lᵀ of the internal force and the F-bar factor belong to the stiffness.
+//! Consistent spatial tangent of the Kirchhoff stress (T4.4).
 
 use super::Response;
 use crate::tensor::Tensor;

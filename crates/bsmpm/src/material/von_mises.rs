@@ -1,7 +1,4 @@
-//! Von Mises plasticity with linear isotropic hardening (de Souza Neto et al., 2008, sections 7.3 and 7.4): clay
-//! without drainage whose strength does not depend on the direction of shear, metal.
-//!
-//! One elastic trial stress returns along its own deviator, which is the radius of a cylinder.
+//! Von Mises law with linear isotropic hardening (T4.10).
 
 use super::law::{Branch, Law, Projection, Variable, split};
 use super::{Elastic, Moduli};

@@ -1,8 +1,5 @@
-//! Where a body that runs out ends: how far its lowest row of cells is filled by half.
-//!
-//! The window that is to be half full ends at a point and goes with it, so that the front moves as the points do. A
-//! cell of the grid in its place makes the front jump back by a spacing of points wherever the first of them enter the
-//! next cell.
+//! Run-out front: the farthest point of the lowest row of cells behind which half a cell is filled (T10.8). The window
+//! ends at a point, so the front does not jump.
 
 use crate::grid::Grid;
 use crate::kinematics::Kinematics;

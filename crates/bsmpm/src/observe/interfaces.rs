@@ -1,6 +1,4 @@
-//! How far interfaces between materials have left the grid lines on which they were at the start.
-//!
-//! Strains jump at C0 lines only, and gradients of pore pressure at grid lines only, and grid lines do not move.
+//! Distance of material interfaces from their initial grid lines. Strains can jump at C0 lines only.
 
 use crate::grid::KnotVector;
 use crate::model::Model;

@@ -1,4 +1,4 @@
-//! Numbers of a point that follow from its stress, its strain and its law.
+//! Invariants of stress and strain, density and mobilised strength of a point.
 
 use crate::material::Material;
 use crate::points::Points;

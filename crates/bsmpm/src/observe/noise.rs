@@ -1,7 +1,5 @@
-//! Oscillation of the stress from point to point, by two measures that do not flatter each other.
-//!
-//! A method that smooths with the mass-weighted map S passes the first measure by construction; the second knows
-//! nothing of S.
+//! Scatter of the stress between points by two measures (T10.9). Methods that average over the grid reduce the first by
+//! construction, but not the second.
 
 use crate::error::StepError;
 use crate::exact::Exact;

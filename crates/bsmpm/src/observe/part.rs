@@ -1,4 +1,4 @@
-//! Which points a number counts.
+//! Set of material points over which a quantity is evaluated.
 
 use crate::points::Points;
 use std::ops::Range;

@@ -1,7 +1,4 @@
-//! What fields of the points are at places: planes through the points around.
-//!
-//! A plane reproduces a field that is linear, also where points are on one side only: at a surface. Averages over the
-//! grid do so inside, and pull a value at the surface inwards.
+//! Fields at given positions, by a weighted least-squares plane through the material points nearby (T10.7).
 
 use crate::exact::Exact;
 use crate::grid::Grid;

@@ -1,8 +1,5 @@
-//! The pressure that a frame shows beside the points' own: what is left of it without what the grid cannot hold.
-//!
-//! The pair of displacements and averaged dilations leaves modes to the pressure that no force feels, and that mean
-//! nothing; the equilibrium is right without them. The locally lumped projection onto splines of degree q - 1
-//! (Telikicherla and Moutsanidis, 2022), weighed by volume, damps them.
+//! Projected pressure for output (Telikicherla and Moutsanidis, 2022), free of pressure modes that cause no nodal
+//! force.
 
 use super::noise::pressure;
 use crate::error::StepError;

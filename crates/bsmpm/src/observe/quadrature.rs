@@ -1,5 +1,4 @@
-//! How well the points fill the cells: equal-weight quadrature is exact where the volumes of a cell's points add up to
-//! it.
+//! Quadrature defect: the volume of the points in a cell over the volume of the cell, minus one.
 
 use crate::exact::Exact;
 use crate::grid::occupied::Occupied;

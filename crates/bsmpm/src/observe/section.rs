@@ -1,10 +1,6 @@
-//! Section forces: what the stress transmits across a line, of a solid across a plane.
-//!
-//! They are the virtual work of the stress on motions of the grid that move one side of the section as a rigid body and
-//! leave the other one. Forces on the nodes balance for such motions, so normal force, shear forces and moments have
-//! their equilibrium as exactly as the step has its own, however the stress oscillates from point to point. A body of
-//! revolution moves as a rigid one along its axis only: what a motion along the radius stretches around the axis does
-//! work beyond the section as well, which is left out, and the other forces are means over the cells at the section.
+//! Section forces across a line or plane (T10.10) to (T10.12): the virtual work of the stress on a rigid motion of one
+//! side. Nodal forces balance for this motion, so stress scatter has no effect. In axisymmetry only the axial force is
+//! exact.
 
 use crate::exact::Exact;
 use crate::grid::Grid;

@@ -1,4 +1,4 @@
-//! The columns of the points as sorting, migration and checkpoints see them: rows of bytes, whatever they hold.
+//! Arrays of the material points as rows of bytes, for sorting, migration and checkpoints.
 
 use super::packed::{Components, Packed};
 use crate::tensor::Symmetric;

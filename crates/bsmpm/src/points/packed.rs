@@ -1,5 +1,4 @@
-//! Tensors of all points, without the components that the dimension leaves at zero: in a plane those that couple it
-//! with its normal. Computation knows whole tensors only.
+//! Storage of tensors without the components that are zero in two dimensions.
 
 use crate::tensor::{Symmetric, Tensor};
 use crate::threads;

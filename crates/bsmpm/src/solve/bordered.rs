@@ -1,5 +1,4 @@
-//! A linear system whose nodes are coupled by rigid bodies that move freely: the few unknowns of their motions border
-//! the matrix of the nodes, and are taken out of it (Sherman, Morrison and Woodbury).
+//! Elimination of the motions of free rigid bodies from the linear system (T7.10), by the Woodbury formula.
 
 use crate::boundary::rigid::MOTIONS;
 use crate::error::SolveError;

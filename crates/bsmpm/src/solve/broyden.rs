@@ -1,8 +1,4 @@
-//! Steps (6), (7): Broyden's quasi-Newton direction in product form, one solve with K_0 per iteration.
-//!
-//! H_{k+1} = (I + z_k s_k^T / s_k.s_k) H_k, where s is the step that was taken and a the part of the direction that it
-//! is: the printed update K+ = K - f s^T / s.s holds for full steps, in general it is
-//! K+ = K + ((1-a) f_old - f_new) s^T / s.s.
+//! Broyden's quasi-Newton direction in product form (T5.12). For shortened steps the update is (T5.13).
 
 use crate::parallel::{Halo, dots};
 

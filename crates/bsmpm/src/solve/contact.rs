@@ -1,6 +1,5 @@
-//! Equilibrium of a step whose faces, strips or rigid bodies push and rub: sought with the statuses of the last
-//! displacement, corrected where the found one contradicts them, until it contradicts none (an active set; see
-//! [`contact`](crate::boundary::contact)).
+//! Active-set method for contact (T7.1), (T7.2): finds equilibrium with fixed statuses, then corrects contradicted
+//! ones.
 
 use crate::boundary::strip::StripAttachments;
 use crate::error::StepError;

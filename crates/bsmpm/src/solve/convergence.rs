@@ -1,7 +1,4 @@
-//! Step (9): when an iteration has converged, and when it is not worth going on.
-//!
-//! The paper prints the same numerator and denominator; read |du_k . f_k| / |du_0 . f_0|. That product is no norm (it
-//! crosses zero while the forces are far from balanced), so the relative out-of-balance force must be small too.
+//! Convergence criteria (T5.15), (T5.16), and early termination of slow iterations.
 
 use crate::error::{Measures, SolveError, StepError, WorstNode};
 use crate::kinematics::Kinematics;

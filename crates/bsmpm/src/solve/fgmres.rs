@@ -1,5 +1,4 @@
-//! The generalised minimal residual method with a preconditioner that may vary (Saad, 1993): for an operator known by
-//! its product, on vectors whose sums are the same on any number of ranks.
+//! Flexible GMRES (Saad, 1993) for an operator that is given by its matrix-vector product.
 
 use crate::error::SolveError;
 use crate::parallel::{Halo, Krylov};

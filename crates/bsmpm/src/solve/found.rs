@@ -1,4 +1,4 @@
-//! What the search for equilibrium found.
+//! Converged state of a step.
 
 use crate::error::Measures;
 use crate::kinematics::Kinematics;

@@ -1,9 +1,5 @@
-//! Step (6) without approximation: the derivative of the out-of-balance force, for Newton's method.
-//!
-//! K v = sum_p V0 (dtau - tau l^T) dF^-T grad N + 4/dt^2 M v + background + strips, where l = (grad v) dF^-1, and dtau
-//! follows l-bar = l + (d ln(dJ-bar/dJ)) / dof I under F-bar, whose average couples points beyond a patch: the product
-//! is complete, the matrix that preconditions it has that term under consistent F-bar only. Where water flows, v has
-//! the change of the pressures behind that of the displacements, and K v that of the water's balance.
+//! Complete derivative of the out-of-balance force for Newton's method (T5.14). The product is exact; the matrix
+//! contains the F-bar average for `consistent-f-bar` and `subgrid-f-bar` only.
 
 use crate::error::SolveError;
 use crate::grid::transfer;

@@ -1,9 +1,5 @@
-//! Steps (6), (7) by all recent secants at once: Anderson (1965), in the form of Fang and Saad (2009).
-//!
-//! With w = K_0^-1 f, a step du = w - sum_j g_j (s_j + dw_j), where s_j are the last steps, dw_j what they changed in
-//! w, and g makes the predicted rest w - sum_j g_j dw_j smallest in the energy of K_0, which is symmetric: its products
-//! dw_i . K_0 dw_j are dw_i . df_j, and dw_i . K_0 w are df_i . w, which need no product with K_0 and no dw but the
-//! newest. On a linear problem that is as good as GMRES, where Broyden's update may take twice the iterations.
+//! Quasi-Newton direction from all recent secants (T5.10), (T5.11) (Anderson, 1965; Fang and Saad, 2009). Products with
+//! K_0 are avoided by dw_i · K_0 dw_j = dw_i · df_j and dw_i · K_0 w = df_i · w.
 
 use crate::exact::Exact;
 use crate::parallel::Halo;

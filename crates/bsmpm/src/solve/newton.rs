@@ -1,5 +1,4 @@
-//! Newton's method with the complete derivative, solved by a Krylov method, and a line search: for the steps in which
-//! quasi-Newton iterations stall.
+//! Newton's method with the complete derivative (T5.14), a Krylov solver and a line search, used where secants stall.
 
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
@@ -95,7 +94,7 @@ fn direction<K: Kinematics<D>, const D: usize>(
     let forcing = |loosest: f64| residual.balance.measure().clamp(FORCING.0, loosest);
     counts.factorisations += 1;
     counts.iterations += 1;
-    // In space a general matrix takes more than twice the memory for the same iterations (`cases/results/solid.md`).
+    // In space a general matrix takes more than twice the memory for the same iterations.
     let (du, krylov) = if solver.is_rough() || D == 3 {
         around_stiffness(problem, residual, forcing(LOOSE), solver)?
     } else {

@@ -1,4 +1,4 @@
-//! Steps (6), (7): directions from one factorised stiffness K_0 and what the iteration has seen of the true one.
+//! Quasi-Newton iteration of a step with one factorised stiffness K_0 (T5.10), (T5.12).
 
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;

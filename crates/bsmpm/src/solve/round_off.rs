@@ -1,5 +1,4 @@
-//! What out-of-balance force is round-off: below it no iteration can change a state, and no relative measure means
-//! anything.
+//! Round-off of the out-of-balance force. Smaller forces count as balanced.
 
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;

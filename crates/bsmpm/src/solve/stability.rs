@@ -1,5 +1,4 @@
-//! Whether the equilibrium that a quasi-static iteration comes near is stable: the sign of the second-order work on its
-//! way (Hill, 1958). Asked of a single elastic material, or without averages; why, and what it meets: `solve.md`.
+//! Stability check: rejects elastic quasi-static states with negative second-order work (T5.17).
 
 use crate::error::StepError;
 use crate::kinematics::Kinematics;

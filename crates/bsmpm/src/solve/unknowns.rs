@@ -1,4 +1,4 @@
-//! Vectors of the unknowns alone: what an iteration keeps of many steps follows the occupied cells, not the grid.
+//! Packed vectors of the unknowns only.
 
 use crate::exact::Exact;
 use crate::nodal::Nodal;

@@ -1,8 +1,4 @@
-//! Nodes that a single material touches. One scale for the forces of all would let a heavy body excuse what is out of
-//! balance in a light one, so the force measure is taken of each material's own nodes, too.
-//!
-//! Nodes where materials meet belong to none: there the forces of the heavier one act. Bodies of one material share a
-//! scale.
+//! Nodes that only one material touches, for the force criterion of each material (T5.16).
 
 use crate::exact::Exact;
 use crate::grid::Shape;

@@ -1,5 +1,4 @@
-//! Step (6): the parts that the stiffness K_0 and the complete derivative share: a point's moduli in the block of its
-//! patch, mass, and what is added to a matrix once its patches are assembled.
+//! Assembly that (T5.8) and (T5.14) share: tangent moduli, mass, footings and rigid bodies.
 
 use crate::error::SolveError;
 use crate::grid::Shape;

@@ -1,11 +1,5 @@
-//! Steps (10), (11): grid kinematics, and the converged state saved into the points.
-//!
-//! The Cauchy stress that is kept comes from the converged tau; the b^e that the next step starts from is the averaged
-//! or filtered one under modified and consistent F-bar: the two differ, and the stress is the one in equilibrium.
-//!
-//! It is tau/J-bar, J-bar the dilation that the stress has felt: the product of the averaged ones of all steps and of
-//! what filters made of the elastic part. The point's own J = det F drifts away from that (the short footing's: 0.79 to
-//! 1.33), as nothing resists, so that tau/J lies outside of the yield surface that tau is on.
+//! Update of the points from the converged state (T2.6), (T2.7), (T3.8), (T4.3). Smoothing (T3.5), (T3.7) changes b^e,
+//! not the Cauchy stress.
 
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};

@@ -1,6 +1,5 @@
-//! F-bar's average in a matrix, by which points of neighbouring patches dilate together: sum_h (1/W_h) f_h g_h^T over
-//! the functions h that average, W_h = sum_r A_hr w_r, g_h the forces that work on the dilation of h, f_h those that a
-//! unit of it raises. Where it comes from, and what it is worth: `solve.md`.
+//! Stiffness of the F-bar average, the third term of (T5.8), with the sums of (T5.9): sum_h (1/W_h) f_h g_h^T. In K_0,
+//! f_h is a multiple of g_h.
 
 use crate::grid::{Contributions, Grid, Shape};
 use crate::model::Model;

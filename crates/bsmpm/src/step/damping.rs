@@ -1,24 +1,5 @@
-//! Kelvin-Voigt damping: beside the law's stress a viscous one, the elastic stiffness times the rate of elastic
-//! strain.
-//!
-//! `τ_v = (β/Δt) D : (e - Δεᵖ)`, `e = ½ ln ΔF̄ c ΔF̄ᵀ` the strain of the step (c: see below), Δεᵖ what of it is
-//! plastic, D : Δεᵖ what the return took from the trial stress, and β the material's retardation time: a wave of
-//! the circular frequency ω has the damping ratio βω/2. By the mean rate of the step it takes energy in every step
-//! in which nothing flows, however long, and a motion at constant velocity or a rotation feels nothing of it. It
-//! comes half a step late, which raises the frequency by the share βω²Δt/4. Both strains are logarithms, as their
-//! difference is small where soil flows: ½ (ΔF̄ ΔF̄ᵀ - I) dilates by γ²/2 under a shear γ.
-//!
-//! With the rate of all strain the stress would have no bound where material flows: the clay of
-//! `cases/shaken_slope.toml` slips 0.031 m with 5 % at 2 Hz by it, 0.270 m by that of elastic strain, 0.286 m without.
-//!
-//! What smoothing takes from the elastic strain after a step comes back as a strain in the next. It is no rate of
-//! that strain from the end of one step to that of the next, and the points keep it where they are damped and
-//! smoothed: `ΔF̄ c ΔF̄ᵀ` stands in the place of `ΔF̄ ΔF̄ᵀ`, c the smoothed bᵉ by that before. The short collapse
-//! with 2 % at 5 Hz, steps of 1, 0.5 and 0.25 ms, has a run-out of 0.454, 0.448 and 0.463 m with consistent F-bar
-//! (0.474,
-//! 0.452, 0.467 without damping; 0.479, 0.504, 0.532 without c), 0.452, 0.467, 0.463 with modified F-bar (0.458, 0.467,
-//! 0.476;
-//! 0.435, 0.427, 0.405).
+//! Kelvin-Voigt damping: the viscous stress (T5.6), added to the stress of the law in each iteration. The change c of
+//! b^e by smoothing is excluded.
 
 use crate::material::{MaterialError, Response};
 use crate::model::Model;

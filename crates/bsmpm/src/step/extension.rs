@@ -1,19 +1,11 @@
-//! Step (2): extended B-splines. Functions that reach into nearly empty cells only are tied to those of full cells, see
-//! [`grid::extension`](crate::grid::extension) for the weights e_ij.
+//! Extended B-splines (T2.10) to (T2.12): functions of nearly empty cells are tied to functions of full cells. Not tied
+//! are functions at footings, prescribed segments and points in contact with rigid bodies.
 //!
-//! A cell is full if its points fill at least 0.8 of it. A function is outer if it is active and none of its cells is
-//! full. Functions at points of a rigid strip, or at material points in contact with a rigid body, are not tied: the
-//! strip or body holds them, and what it presses on cannot follow a linear field. Cubic splines are left alone: next to
-//! a full cell they stay soft, so that ties neither stop the creep of their edge nor let a step converge as fast.
+//! - [`Extension::extend`] sets the tied displacements.
+//! - [`Extension::reduce`] moves nodal forces of tied functions to the unknowns.
+//! - [`reduced_system`](super::reduced_system) forms the matrices E^T K E.
 //!
-//! With u_I the inner coefficients, everything else of the step keeps its complete nodal arrays:
-//!
-//! - displacements are extended, u = E u_I, before points deform ([`Extension::extend`]);
-//! - nodal forces are reduced, f_I + E^T f_J, before they are balanced ([`Extension::reduce`]);
-//! - matrices become E^T K E ([`reduced_system`](super::reduced_system)).
-//!
-//! Ranks know the outer functions of their window. A tie whose surroundings other ranks see as well is *published*: all
-//! ranks know it, and exchange its displacement and force, so that sums run in the same order on any number of ranks.
+//! A *published* tie is also used by other ranks. All ranks know it and exchange its displacement and force.
 
 use crate::grid::extension::{ExtendedSplines, Homes, Nearness, REACH, weights};
 use crate::grid::{Grid, Shape};

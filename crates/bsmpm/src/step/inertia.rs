@@ -1,4 +1,4 @@
-//! The nodes' motion at the start of a step (2b, 2c), and how it goes on in it (10a, 10b).
+//! Nodal velocity and acceleration at the start of a step (T2.4), and their integration (T5.3) to (T5.5).
 
 use crate::grid::transfer;
 use crate::points::Points;

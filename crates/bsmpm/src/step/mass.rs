@@ -1,11 +1,5 @@
-//! The mass matrix of the nodes, lumped or consistent: what maps momentum to velocity and resists acceleration.
-//!
-//! One matrix serves both. With `M v_I = Σ_p N_Ip m_p v_p` and `M Δv_I = f dt`, the points' gain
-//! `Σ_p m_p v_p · Σ_I N_Ip Δv_I` is the work `v_I · f dt` of the forces on the displacement that they cause; with
-//! different matrices energy is made or lost in proportion to the force, however short the step. A lumped M smooths the
-//! velocity at a body's edge, where the points that a node sees lie to one side of it; the consistent one gives every
-//! velocity field that the splines hold back to them, rotation among them, but is singular where a node sees too
-//! little: see [`SHARE`].
+//! Mass matrix of the nodes (T2.8), lumped or mostly consistent. Velocity and inertia use the same matrix; otherwise
+//! energy is not conserved.
 
 use crate::grid::{Shape, transfer};
 use crate::nodal::Nodal;

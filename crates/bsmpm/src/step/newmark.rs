@@ -1,9 +1,4 @@
-//! Time integration (steps 2c, 5b, 10): Newmark's family, with a choice of numerical damping.
-//!
-//! `u = dt v + dt² ((1/2 - β) a + β a')`, `v' = v + dt ((1 - γ) a + γ a')`; balance at the end of the step with the
-//! inertia `M ((1 - α) a' + α a)` (Wood, Bossak and Zienkiewicz, 1980; here α as in Chung and Hulbert, 1993). In this
-//! method a at the start of a step is what the points give the nodes, not what the last step left there. A first step
-//! under a force that acts at once has β = 1/2, γ = 1.
+//! Newmark time integration with optional numerical damping (T5.3) to (T5.5).
 
 /// Parameters of the family; the paper's are α = 0, β = 1/4, γ = 1/2.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! Step (2): what the points tell the nodes: mass, velocity, acceleration, external force, and which are unknowns.
+//! Transfer from points to nodes at the start of a step (T2.4), (T2.5), and choice of the unknowns.
 
 use crate::background::Blocks;
 use crate::boundary::absorbing::Dashpots;

@@ -1,4 +1,4 @@
-//! What a step takes out of the grid: material beyond the faces that let it out is counted and forgotten.
+//! Removal of material beyond outflow faces, after the step.
 
 use crate::energy::Stored;
 use crate::exact::Exact;

@@ -1,4 +1,4 @@
-//! What is fixed while a step is iterated, steps (3) to (9).
+//! Data that are fixed during the iterations of a step.
 
 use crate::boundary::strip::StripAttachments;
 use crate::grid::Shape;

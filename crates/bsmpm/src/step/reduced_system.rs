@@ -1,18 +1,12 @@
-//! Step (6): the matrix E^T K E of extended splines, for a solver that knows nothing of them.
-//!
-//! Blocks go on to the solver as they are. There the rows and columns of tied components are lost, as these are no
-//! unknowns. Here the entries with a tied row or column are kept, and once all blocks are there they are added to the
-//! rows and columns of the homes:
+//! Assembly of E^T K E (T2.12) of extended splines. The solver drops rows and columns of tied components; this module
+//! adds them to those of the functions to which they are tied:
 //!
 //! ```text
 //! (E^T K E)_im = K_im + sum_j e_ij K_jm + sum_k K_ik e_mk + sum_jk e_ij K_jk e_mk.
 //! ```
 //!
-//! The pattern of the matrix stays as it is. An entry of two homes that lie farther apart than nodes couple in it is
-//! replaced by its absolute value on both diagonals: what that adds is positive semidefinite, so that the matrix stays
-//! definite, and the quasi-Newton secants (Newton's Krylov method) correct it like all that K_0 leaves out.
-//!
-//! An entry is summed by columns of cells, in their order, so that it has the same bits on any number of ranks.
+//! An entry outside the sparsity pattern is replaced by its absolute value on both diagonals, which keeps the matrix
+//! positive definite.
 
 use crate::error::SolveError;
 use crate::grid::Grid;

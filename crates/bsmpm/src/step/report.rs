@@ -1,4 +1,4 @@
-//! What a step reports of itself.
+//! Report of an accepted step.
 
 use crate::boundary::{ContactReport, RigidReport, StripReport};
 use crate::energy::{Flows, Turnover};

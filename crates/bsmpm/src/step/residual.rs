@@ -1,4 +1,4 @@
-//! Step (5): internal force, inertia and the out-of-balance force.
+//! Internal force (T5.1), inertia (T5.3) and out-of-balance force (T5.2), evaluated in each iteration.
 
 use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};

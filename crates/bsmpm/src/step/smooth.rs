@@ -1,10 +1,4 @@
-//! Step (11e): smoothing of the elastic state that the next step starts from, once a converged step.
-//!
-//! How far it reaches: the kernel of S is the overlap of two B-splines of degree q, spread uniformly over a cell. As a
-//! density such a spline is the sum of q + 1 uniform ones over a cell, of variance (q+1) h^2/12 about its middle; to
-//! the nodes and back it is (q+1) h^2/6. Variances of passes add up, so that n of them smooth like a Gaussian of
-//! standard deviation `h sqrt(n (q+1)/6)`, and one multiplies a mode of wave number k by 1 - (q+1) k^2 h^2/12 + O(k^4
-//! h^4). A share theta of a pass, (1 - theta) + theta S, has theta times its variance.
+//! Smoothing of the elastic state b^e after a converged step (T3.5) to (T3.7).
 
 use crate::exact::Exact;
 use crate::grid::{Shape, transfer};
@@ -17,7 +11,7 @@ use crate::tensor::Symmetric;
 use crate::threads;
 
 /// Length (m) along which so many passes of S smooth on splines of degree `order` over cells of size `h` (m):
-/// `h sqrt(passes (q+1)/6)`; see the module.
+/// `h sqrt(passes (q+1)/6)` (T3.6).
 pub fn length(order: usize, h: f64, passes: f64) -> f64 {
     h * (passes * (order as f64 + 1.0) / 6.0).sqrt()
 }
@@ -72,8 +66,8 @@ impl PlasticFlow {
     }
 }
 
-/// Plastic strain that takes 63 % of the fluctuation of the elastic dilation. It scales with how far points move among
-/// each other, not with the elastic strain: a filter of that scale follows the number of steps in flowing sand.
+/// Plastic strain (-) that removes 63 % of the fluctuation of the elastic dilation: of the order in which points move
+/// relative to each other, not of the elastic strain.
 const RENEWING: f64 = 0.01;
 
 /// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S(eps_v)_p - eps_v,p)) b^e_p, theta_p = S(1 - exp(-x/0.01))_p.

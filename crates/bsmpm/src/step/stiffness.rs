@@ -1,10 +1,4 @@
-//! Step (6): the stiffness K_0 that the quasi-Newton method starts from, at the state it starts from, symmetric and
-//! without negative eigenvalues; definite with inertia, or where supports, points enough in a cell or the background
-//! leave no motion free: K_0 = 4/dt^2 M + sum_p V0 G^T D_p G + F-bar's average + background + strips; numerical damping
-//! changes the 4/dt^2.
-//!
-//! D_p is the elastic D^e, or where that state yields a positive stand-in for the tangent there. The quasi-Newton
-//! method stands for everything that K_0 leaves out.
+//! Symmetric positive definite stiffness K_0 at the first guess of a step (T5.7) to (T5.9).
 
 use crate::error::SolveError;
 use crate::grid::shape::{Patch, PatchColumn};

@@ -1,4 +1,4 @@
-//! Step (4): deformation of the points under a nodal displacement, and its F-bar (Eqs 15-18).
+//! Deformation of the points under a nodal displacement (T2.6), with F-bar (T3.2) and (T3.3), in each iteration.
 
 use crate::grid::{Shape, transfer};
 use crate::kinematics::{Gradient, Kinematics};
@@ -66,7 +66,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         weight(model.stabilisation, points, p) * K::jacobian::<f64>(&self.grad[p])
     }
 
-    /// ratio_p = kept_p S(w dJ)_p / (w_p dJ_p), which F-bar multiplies the dilation of point `p` with; 1 without F-bar.
+    /// ratio_p = S(w dJ)_p / (w_p dJ_p kept_p), r_p of (T3.2); 1 without F-bar.
     #[inline]
     pub fn ratio(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         let Some(mean) = &self.mean else { return 1.0 };
@@ -251,7 +251,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
 /// Strains of a step whose logarithm is a series.
 const SMALL: f64 = 1e-3;
 
-/// kept S(w dJ) / (w dJ).
+/// S(w dJ) / (w dJ kept).
 #[inline(always)]
 fn ratio<R: Real>(mean: R, own: R, kept: R) -> R {
     mean / own * (kept.like(1.0) / kept)

@@ -1,25 +1,4 @@
-//! Velocities of material points within a cell of a fixed face.
-//!
-//! The nodes of a fixed face are at rest, and the displacement field vanishes there. A point near the face therefore
-//! hardly moves. With a lumped mass matrix it nevertheless keeps its velocity, because the accelerations that it
-//! receives vanish there, too (Eq. 11.3). The other nodes of the cell receive this momentum in every step, so that
-//! friction at the face does not brake a layer of one cell as it should.
-//!
-//! [`WallVelocity::Relaxed`] removes the excess. With the displacement `Δu_p` of a step of the length `dt`,
-//!
-//! ```text
-//! w_p = v_p - Δu_p / dt                           excess velocity
-//! v_p ← v_p - s_p min(1, RATE |w_p| dt / h) w_p
-//! ```
-//!
-//! h is the thickness of the cell at the face, and s_p the share of the nodes of fixed faces in the shape functions at
-//! the point, `(1 - ξ)^q` at the distance ξ h from the face with splines of degree q. The excess decays over a path of
-//! a quarter of a cell, whatever the length of the step, and the face takes the momentum. Points that vibrate about
-//! their place are hardly affected: their path is a small part of a cell. The energy account counts the loss as
-//! transfer.
-//!
-//! A rate in steps instead of path (PIC in the cell at the face) would grow without bound as steps get shorter, and
-//! stop layers that are thinner than a cell at once.
+//! Velocity correction of points within a cell of a fixed face, after the step (T6.2).
 
 use crate::boundary::Support;
 use crate::exact::Exact;
@@ -30,7 +9,7 @@ use crate::tensor::Vector;
 use crate::threads;
 
 /// Rate of the relaxation (-), over the path of the excess velocity in cells. For the run-outs that chose it see
-/// `boundary.md`.
+/// `decisions.md` of the manual.
 const RATE: f64 = 4.0;
 
 /// Cells by which a point beside a fixed face must have been displaced since the start for its velocity to count.

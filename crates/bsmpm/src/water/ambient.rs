@@ -1,5 +1,4 @@
-//! Still water: its pressure and what it does to the ground.
-#![doc = include_str!("../water.md")]
+//! Hydrostatic pressure below a level or phreatic line (T8.2), and its force (T8.3).
 
 use crate::points::Points;
 use crate::schedule::{between, turns};

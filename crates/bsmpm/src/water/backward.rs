@@ -1,8 +1,4 @@
-//! How water that flows is followed in time: by backward differences of second order on steps of any length, or by
-//! backward Euler where the step before says nothing of this one.
-//!
-//! `zeta - zeta^n - last (zeta^n - zeta^n-1) = now dt (what comes in under the pressure at the end)`, which is exact of
-//! a zeta that is a parabola of time (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, III.5).
+//! Time integration of flow: second-order backward difference (T8.10), or backward Euler.
 
 use crate::model::{Model, Regime};
 use crate::points::Points;

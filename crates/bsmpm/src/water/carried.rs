@@ -1,5 +1,4 @@
-//! Pore pressure that points carry: a share r_u of the weight above them at the start; and the excess of water that
-//! flowed, held as it is while strength is divided.
+//! Pore pressure carried by points: r_u, or excess pressure that is fixed during strength reduction (T8.4).
 
 use crate::boundary::Support;
 use crate::grid::{Contributions, Shape, transfer};

@@ -1,4 +1,4 @@
-//! How much water a soil holds.
+//! Water content of a soil (T8.5).
 
 use crate::water::flow::Soil;
 use crate::water::retention::{Retained, RetainedChange, Retention};

@@ -1,8 +1,4 @@
-//! Drains and inflows: surfaces of bodies at which the pore pressure is given, or through which water is put in.
-//!
-//! Their points move with the material that they are anchored to, as those of loads do. A drain lets out c (p - p-bar)
-//! per area and time, with the conductance c of the soil over a hundredth of a cell: its surface may cut the cells, as
-//! no function of the pressure has to vanish for it.
+//! Drains, seepage faces and inflows on surfaces of bodies, part of the water balance and the pressure matrix (T8.13).
 
 use crate::boundary::anchor::turned;
 use crate::boundary::surface::Attachment;

@@ -1,4 +1,4 @@
-//! Water that flows: what the soils, the drains and the inflows are to it.
+//! Input of flow: soils, permeability (T8.8), drains and inflows.
 
 use crate::boundary::SurfacePoint;
 use crate::schedule::{between, turns};

@@ -1,10 +1,4 @@
-//! When the matrix of the pressures follows the iteration: where seepage faces open or close, and while pores that
-//! empty are far from balanced.
-//!
-//! A seepage face is a complementarity, whose derivative jumps with the points that are open: the matrix is assembled
-//! again with those (a semismooth Newton method), and the secants, which are of the matrix before, start again. What
-//! pores hold and let through under suction changes by orders of magnitude within a step: the first iterations follow
-//! it too, and go no further with a pressure at once than the matrix knows.
+//! Reassembly of the pressure matrix if seepage faces open or close, or with suction.
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;

@@ -1,7 +1,7 @@
-//! The derivative of the water's balance, and of what the water presses with, for Newton's method.
+//! Derivative of the water balance (T8.9) and of the pore pressure in (T8.6), for Newton's method.
 //!
-//! With l = (grad v) dF^-1: dJ = J tr l, d(dF^-T grad p) = dF^-T grad dp - l^T dF^-T grad p, d(J dF^-1 w) = J dF^-1
-//! (tr l w - l w + dw), where w follows the gradient, the porosity by J-bar, and the saturation.
+//! With l = (grad v) dF^-1: dJ = J tr l, d(dF^-T grad p) = dF^-T grad dp - l^T dF^-T grad p, d(J dF^-1 w) = J dF^-1 (tr
+//! l w - l w + dw).
 
 use crate::grid::transfer::scalars;
 use crate::kinematics::{Gradient, Kinematics};

@@ -1,5 +1,4 @@
-//! The matrix of the pressures, S = C + M_p/M: what a pressure stores and lets flow, and what the skeleton gives way by
-//! against its stiffness in one direction (fixed stress).
+//! Pressure matrix S of the fixed-stress split (T8.17).
 
 use crate::error::SolveError;
 use crate::grid::transfer::scalars::{self, MOST_FUNCTIONS};

@@ -1,6 +1,4 @@
-//! Newton's direction of displacements and pressures together: the complete derivative, its product only, in FGMRES,
-//! preconditioned by the fixed-stress split, block by block as PETSc's PCFIELDSPLIT of the type `schur` with its upper
-//! factor would be. See `water.md`.
+//! Newton direction of displacements and pressures: FGMRES, preconditioned by the fixed-stress split (T8.16).
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;

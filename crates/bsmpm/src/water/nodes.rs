@@ -1,4 +1,4 @@
-//! What the points tell the nodes of the water, for one step: which pressures are unknowns, and from where they start.
+//! Nodal pore pressures at the start of a step: unknowns, prescribed values, stabilisation (T8.11).
 
 use crate::error::StepError;
 use crate::grid::transfer::scalars;
@@ -15,7 +15,7 @@ use crate::water::flow::{Flow, Motion, Soil};
 use crate::water::ties::Ties;
 
 /// Share of the tau term, of h^2/M: with it the pair of splines of degree q and q - 1 is stable, and in one dimension
-/// the storage is lumped; see `water.md`.
+/// the storage is lumped (T8.11).
 const TAU: f64 = 1.0 / 6.0;
 /// Square of the wave number of the shortest wave that cells hold, over 1/h^2.
 pub(super) const SHORTEST_WAVE: f64 = 10.0;

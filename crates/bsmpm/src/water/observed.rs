@@ -1,4 +1,4 @@
-//! The pore water at the points, as histories and frames tell it.
+//! Pore water quantities of points for histories and frames.
 
 use crate::error::StepError;
 use crate::exact::Exact;

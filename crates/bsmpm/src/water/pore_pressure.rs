@@ -1,5 +1,4 @@
-//! The pore pressure that the soil carries as a function of the place, from which all friction takes the part of normal
-//! forces that water carries.
+//! Pore pressure at a position (T8.14), for the effective normal force of friction (T7.2).
 
 use crate::grid::{Shape, transfer};
 use crate::parallel::Halo;

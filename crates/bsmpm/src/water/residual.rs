@@ -1,4 +1,4 @@
-//! The balance of the water at the nodes: what points take in, what flows through them, what leaves.
+//! Water balance at the nodes (T8.9), Darcy flux (T8.7), and pore pressure in the Kirchhoff stress (T8.6).
 
 use crate::grid::transfer::scalars;
 use crate::kinematics::{Gradient, Kinematics};

@@ -1,5 +1,4 @@
-//! How much water a soil keeps under suction, and how well it still conducts: van Genuchten (1980) and Mualem (1976),
-//! or as measured.
+//! Retention curve and relative permeability: van Genuchten and Mualem (T8.15), or measured.
 
 mod measured;
 

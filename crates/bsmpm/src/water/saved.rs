@@ -1,4 +1,4 @@
-//! The converged water, saved into the points, and what a step reports of it.
+//! Update of the pore water of the points after convergence (T8.12), and its report.
 
 use crate::exact::Exact;
 use crate::grid::transfer::scalars;

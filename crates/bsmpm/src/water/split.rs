@@ -1,8 +1,4 @@
-//! Directions of displacements and pressures together, by the fixed-stress split: two symmetric definite systems, one
-//! after the other.
-//!
-//! z_p = -S^-1 R, f' = (f_oob + Q z_p, -R), z_u = K^-1 (f_oob + Q z_p). f' is a linear map of (f_oob, R) that stays in
-//! a step, and z = diag(K, S)^-1 f': secants that are fed with these minimise in the energy of diag(K, S).
+//! Directions by the fixed-stress split (T8.16), from two symmetric positive definite systems.
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;

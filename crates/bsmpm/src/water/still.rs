@@ -1,4 +1,4 @@
-//! Still water as flow sees it: its pressure, its gradient, and what drives water of this weight against it.
+//! Hydrostatic pressure, its gradient and the weight of water, which drive flow (T8.7).
 
 use crate::model::{Gravity, Model, Regime};
 use crate::points::Points;

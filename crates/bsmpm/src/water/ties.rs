@@ -1,8 +1,4 @@
-//! Lines across which strains may jump, and the pressure may not.
-//!
-//! Where a breakpoint stands q times the splines of degree q - 1 are torn: the last function before the line and the
-//! first one behind it are both 1 on it. What ties them is a flow between them, as through a skin on the line, of a
-//! conductance so large that nothing of a jump is left to see; it takes no water from anywhere.
+//! Ties of the excess pressure across C0 lines, where the splines of degree q - 1 are discontinuous.
 
 use crate::grid::{Grid, KnotVector};
 use crate::parallel::{Halo, LinearSolver};

@@ -1,4 +1,4 @@
-//! What the water of a step works: the balance of the water, tested by the excess pressure.
+//! Work of the pore water in a step, and seepage dissipation (T8.18).
 
 use crate::exact::Exact;
 use crate::grid::transfer::scalars;

@@ -1,4 +1,4 @@
-//! What a step's inner iteration allocates: arrays a pass, nothing a point.
+//! Memory allocations of an evaluation of the residual, independent of the number of points.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::strip::StripAttachments;

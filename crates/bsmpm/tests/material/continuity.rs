@@ -1,4 +1,4 @@
-//! Continuity of the stress where regions meet: bisection between trials of different regions (reliability N03, N04).
+//! Continuity of the stress between regions of the return mapping, by bisection between trial states.
 
 use super::{REGIONS, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;

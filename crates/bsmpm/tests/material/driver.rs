@@ -1,4 +1,4 @@
-//! One point driven along loading paths with closed forms.
+//! Laws along loading paths with closed forms.
 
 use super::{hencky, mohr_coulomb, respond};
 use bsmpm::material::Material;

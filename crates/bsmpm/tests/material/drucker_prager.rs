@@ -1,4 +1,4 @@
-//! Drucker-Prager: where the cone meets the pyramid, yield, flow rule and tangent on cone and tip.
+//! Drucker-Prager: comparison with Mohr-Coulomb, yield, flow rule and tangent.
 
 use super::{largest, mohr_coulomb, respond, stretched, turned};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Isotropy, strain range and nearly equal eigenvalues (reliability N04, N05).
+//! Isotropy of the laws, tiny and large strains, and nearly equal eigenvalues.
 
 use super::{difference, hencky, largest, mohr_coulomb, respond, stretched, turned};
 use crate::random::Random;

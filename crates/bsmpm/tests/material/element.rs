@@ -1,4 +1,4 @@
-//! One point along the paths of a laboratory, against closed forms.
+//! Element tests against closed forms.
 
 use super::{hencky, mohr_coulomb};
 use bsmpm::element::{Control, Element, ElementError, Target};

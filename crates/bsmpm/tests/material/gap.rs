@@ -1,4 +1,4 @@
-//! Volume that opens at the apex: sand comes apart, and resists again where it came apart.
+//! Separation of Mohr-Coulomb soil at the apex: a gap must close before the soil resists again.
 
 use super::{mohr_coulomb, respond};
 use bsmpm::material::{Branch, Material, Response};

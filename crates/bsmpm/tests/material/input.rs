@@ -1,4 +1,4 @@
-//! Trial tensors without a response: each is an error, none a panic or a NaN.
+//! Invalid trial tensors must give an error, neither a panic nor a NaN.
 
 use super::{hencky, mohr_coulomb};
 use bsmpm::material::MaterialError;

@@ -1,4 +1,4 @@
-//! Lanes: eight points at a time have the bits of each by itself.
+//! Bitwise equality of SIMD and single evaluation of the laws.
 
 use super::{REGIONS, hencky, mohr_coulomb, turned};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Constitution (section 2.2): reference values, properties and closed forms, each named by its source.
+//! Tests of the constitutive laws.
 
 mod cam_clay;
 mod continuity;

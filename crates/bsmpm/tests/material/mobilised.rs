@@ -1,4 +1,4 @@
-//! Mobilised strength against what a law's own yield function says in closed form.
+//! Mobilised strength against closed forms of the yield functions.
 
 use super::mohr_coulomb;
 use bsmpm::material::{Elastic, Material, VonMises};

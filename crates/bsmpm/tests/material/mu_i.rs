@@ -1,4 +1,4 @@
-//! mu(I): the strength at the rate of the step, constant volume, tangent, and the cone that it is without a rate.
+//! Dense granular flow μ(I): rate-dependent strength, constant volume and tangent.
 
 use super::{largest, respond, stretched, turned};
 use crate::random::Random;

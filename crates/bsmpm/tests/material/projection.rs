@@ -1,4 +1,4 @@
-//! Associated returns against a brute-force projection: closest point in the energy norm (reliability N03).
+//! Associated returns against a brute-force search for the closest point in the energy norm.
 
 use super::{Branch, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! A deterministic source of trials: the linear congruential generator of Knuth's MMIX.
+//! Reproducible random trial states (generator of Knuth's MMIX).
 
 use bsmpm::tensor::{Symmetric, Tensor};
 use nalgebra::{Rotation3, Vector3};

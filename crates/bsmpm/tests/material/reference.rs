@@ -1,4 +1,4 @@
-//! Reference values of method.md section 2, and limits between materials.
+//! Reference values of an independent prototype, and limits between laws.
 
 use super::{Branch, Material, difference, hencky, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;

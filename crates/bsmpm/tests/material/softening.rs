@@ -1,4 +1,4 @@
-//! Mohr-Coulomb whose strength follows the plastic strain: yield, tangent, and paths with closed forms.
+//! Softening Mohr-Coulomb: yield, tangent, and paths with closed forms.
 
 use super::{answer, largest, mohr_coulomb, stretched, turned};
 use crate::random::Random;

@@ -1,5 +1,4 @@
-//! The stiffness that stands for the tangent in the factorised matrix: symmetric, positive, and the tangent where that
-//! is so.
+//! Positive definite stiffness of yielding points, in comparison with the tangent.
 
 use super::{Branch, REGIONS, hencky, mohr_coulomb, respond};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! The spatial tangent against fourth-order central differences of τ((I + h l) b (I + h l)ᵀ), in every region.
+//! Spatial tangent against fourth-order central differences of τ((I + h l) b (I + h l)ᵀ), in every region.
 
 use super::{Branch, REGIONS, hencky, mohr_coulomb, respond, stretched, turned};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Properties of the return: yield, order, idempotence, flow rule (reliability N02, N03).
+//! Return mapping of Mohr-Coulomb: yield, order of principal stresses, idempotence and flow rule.
 
 use super::{Branch, difference, largest, mohr_coulomb, respond};
 use crate::random::Random;

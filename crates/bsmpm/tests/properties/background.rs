@@ -1,4 +1,4 @@
-//! The soft background: what it resists and what it leaves alone.
+//! Soft background: it resists strain, but not translation or rotation.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,4 +1,4 @@
-//! Broyden's product form against the dense update of K that it stands for (method.md 4).
+//! Broyden's product form against the dense update of K, equations (T5.12) and (T5.13).
 
 use crate::support::random::Random;
 use crate::support::solver::Skyline;

@@ -1,4 +1,4 @@
-//! What F-bar multiplies the points' dilation with, its linearisation, and the filter of the elastic one (section 2.3).
+//! Volume averages of F-bar, their linearisation, and the filter of the elastic volume strain (T3.7).
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};

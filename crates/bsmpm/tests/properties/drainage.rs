@@ -1,5 +1,4 @@
-//! Drains and inflows: their terms in the balance of the water, where their points go, and what several ranks make of
-//! them.
+//! Drains and inflows: water balance, motion of their surface points, and several ranks.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Dense;

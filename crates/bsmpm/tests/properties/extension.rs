@@ -1,4 +1,4 @@
-//! Extended splines: what the ties of functions of nearly empty cells keep, and what they cure.
+//! Extended splines: ties preserve linear fields, forces and moments, and bound the condition number.
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};

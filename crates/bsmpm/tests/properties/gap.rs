@@ -1,4 +1,4 @@
-//! Sand whose gaps close keeps account of its volume: `ln J = tr εᵉ + gap` in every point, whatever happens to it.
+//! Volume of Mohr-Coulomb soil with closing gaps: `ln J = tr εᵉ + gap` at every point.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::boundary::Support;

@@ -1,4 +1,4 @@
-//! Measures of how far a run can be trusted, on states whose answer is known.
+//! Indicators on states with a known answer.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

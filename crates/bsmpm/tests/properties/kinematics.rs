@@ -1,4 +1,4 @@
-//! Objectivity, F-bar's neutral element, and that the dimensions agree where they must.
+//! Objectivity, F-bar with ratio one, and agreement between geometries.
 
 use crate::support::random::Random;
 use crate::support::scene::hencky;

@@ -1,4 +1,4 @@
-//! The background resists only the change of a steady motion, and everything where that begins, turns or ends.
+//! Background in steady motion: it resists only the change of the displacement.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;

@@ -1,4 +1,4 @@
-//! Eight points at a time have the bits of each by itself, whatever they carry and whichever stand side by side.
+//! Bitwise equality of SIMD and single evaluation in a step.
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis};

@@ -1,4 +1,4 @@
-//! Step (6) without approximation: the product with the complete derivative is the derivative of the forces.
+//! Product with the complete derivative (T5.14) against differences of the forces.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};

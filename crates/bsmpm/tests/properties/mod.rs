@@ -1,5 +1,4 @@
-//! What must hold for any input: properties of the splines, the mapping, the kinematics, the iteration and the step
-//! control. Numbers after `measured` are what this machine gave; bounds leave room for another one.
+//! Property tests. Comments after `measured` give the value on the development machine.
 
 mod background;
 mod broyden;

@@ -1,4 +1,4 @@
-//! All secants at once on linear problems, where they are as good as GMRES, and vectors of the unknowns alone.
+//! Multisecant method on linear problems, where it is equivalent to GMRES, and packed vectors.
 
 use crate::support::random::Random;
 use crate::support::solver::Skyline;

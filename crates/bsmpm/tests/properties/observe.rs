@@ -1,4 +1,4 @@
-//! What a history records, on fields whose answer is known.
+//! History quantities on fields with a known answer.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Contact, Support};

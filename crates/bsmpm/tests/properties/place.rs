@@ -1,4 +1,4 @@
-//! Where the body ends, and how a place within it moves: histories of fields whose answer is known.
+//! Run-out front and displacement at a position, on fields with a known answer.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::grid::{Grid, KnotVector};

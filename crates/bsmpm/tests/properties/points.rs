@@ -1,4 +1,4 @@
-//! The columns of the points: canonical order, bit by bit through a message, and what they take in memory.
+//! Arrays of material points: sorting, transfer in messages, and memory.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

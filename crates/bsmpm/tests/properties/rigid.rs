@@ -1,4 +1,4 @@
-//! Motion without deformation: free flight, crossing cells, and rigid rotation of the grid's field.
+//! Motion without deformation: free flight across cells, and rigid rotation.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use crate::support::solver::Skyline;

@@ -1,5 +1,4 @@
-//! The step control: cut, grown back, given up, and never anything in between (reliability: a failed step costs
-//! nothing).
+//! Step size control: halving, growth, and failure without change of the points.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

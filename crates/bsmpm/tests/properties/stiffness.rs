@@ -1,4 +1,4 @@
-//! Step (6): the factorised stiffness K_0 against the complete derivative.
+//! Factorised stiffness K_0 (T5.8) against the complete derivative.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};

@@ -1,4 +1,4 @@
-//! Tensor-product nodes: the paper's Fig. 1, and the window of a slab against the whole grid.
+//! Numbering of nodes: figure 1 of the paper, and the window of a rank against the whole grid.
 
 use crate::support::random::Random;
 use crate::support::scene::axis;

@@ -1,4 +1,4 @@
-//! The passes between points and nodes: adjoint to each other, and conserving (Eqs 1, 2; steps 2, 4a, 5a).
+//! Transfers between points and nodes are adjoint to each other, and conserve mass and momentum.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,5 +1,5 @@
-//! What the tests of the physics, and the extremes of `bsmpm-trials`, share: a linear solver that stands in for PETSc,
-//! scenes built through the public API, and numbers that look random but are the same in every run.
+//! Helpers of the tests and of `bsmpm-trials`: linear solvers without PETSc, small models, and reproducible random
+//! numbers.
 
 #![allow(dead_code)] // each uses its own part
 

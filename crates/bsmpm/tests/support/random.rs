@@ -1,4 +1,4 @@
-//! Reproducible numbers: xorshift64*, seeded by the test.
+//! Reproducible random numbers (xorshift64*), seeded by the test.
 
 use bsmpm::tensor::{Square, Vector};
 

@@ -1,4 +1,4 @@
-//! Small scenes in any dimension: a grid, elastic bodies of whole cells, points placed n^D per cell.
+//! Small models in any dimension: a grid, elastic bodies of whole cells, n^D points per cell.
 
 use super::random::Random;
 use super::solver::Skyline;

@@ -1,4 +1,4 @@
-//! Test doubles of the linear solver for one rank, so that the physics is tested without MPI and PETSc.
+//! Linear solvers on one rank, without MPI and PETSc.
 
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;

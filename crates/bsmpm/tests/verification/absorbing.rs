@@ -1,4 +1,4 @@
-//! Faces that absorb: plane waves leave, ground at rest stays, and a base that absorbs lets the ground's motion in.
+//! Absorbing faces: plane waves leave, soil at rest stays at rest, and an absorbing base admits ground motion.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

@@ -1,4 +1,4 @@
-//! Rotational symmetry through the step: uniform strain, and Lame's thick-walled cylinder.
+//! Axisymmetry: uniform strain, and Lamé's thick-walled cylinder.
 
 use super::sections::{DENSITY, G, cut};
 use crate::support::scene::{METHODS, Scene, axis, hencky, rms};

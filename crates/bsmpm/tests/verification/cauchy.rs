@@ -1,5 +1,4 @@
-//! The Cauchy stress that points keep lies on the yield surface that their Kirchhoff stress is on, however far they
-//! flow.
+//! Cauchy stress of the points must remain on the yield surface during large plastic flow (T3.8).
 
 use crate::support::scene::{METHODS, Scene, axis};
 use bsmpm::background::Background;

@@ -1,5 +1,5 @@
-//! A confined column under its own weight: its stress is exactly -rho0 g (l0 - Y) at any strain, Y where the material
-//! was; its height follows from Hencky's law (method.md 9).
+//! Confined column under self-weight. The stress at the initial height Y is -rho0 g (l0 - Y) at any strain, with the
+//! initial length l0.
 
 use crate::support::scene::{Scene, axis, hencky, rms};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
@@ -79,7 +79,7 @@ fn small_strain_stress_of_linear_splines_converges_with_order_one() {
 #[test]
 fn small_strain_stress_of_quadratic_splines_converges_with_order_two() {
     // The errors sit in the two end cells, whose volume shrinks with h: the RMS loses half an order against the mean,
-    // which is method.md's measure (9.1e-4 -> 1.5e-5, order 1.98).
+    // which has 9.1e-4 -> 1.5e-5, order 1.98, in a prototype.
     let (orders, fine) = orders(2);
     assert!(orders[0] >= 1.95); // measured 1.996
     assert!((1.45..1.6).contains(&orders[1])); // measured 1.500
@@ -89,7 +89,7 @@ fn small_strain_stress_of_quadratic_splines_converges_with_order_two() {
 #[test]
 fn small_strain_stress_of_cubic_splines_is_only_of_first_order_as_documented() {
     let (orders, _) = orders(3);
-    assert!((0.95..1.2).contains(&orders[0])); // measured 1.040; method.md 9: 1.05
+    assert!((0.95..1.2).contains(&orders[0])); // measured 1.040; a prototype: 1.05
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn the_same_column_in_three_dimensions_has_the_same_error() {
 
 #[test]
 fn large_strain_stress_stalls_with_linear_splines_ten_times_above_quadratic_ones() {
-    // method.md 9: shortened by 24 %, q = 1 stalls at 6-12 %, q = 2 has 0.26-0.53 % left (point quadrature).
+    // A prototype, shortened by 24 %: q = 1 stalls at 6-12 %, q = 2 has 0.26-0.53 % left (point quadrature).
     let error = |q, cells| {
         let (scene, _) = column::<PlaneStrain, 2>(q, cells, 0.8, 20).solved(1.0, 20.0);
         let [mean, square] = scene.stress_error(0.8);
@@ -116,7 +116,7 @@ fn large_strain_stress_stalls_with_linear_splines_ten_times_above_quadratic_ones
 
 #[test]
 fn heights_of_the_hencky_column_agree_with_lamberts_function() {
-    // Height / l0 of method.md 9 and reference/hencky_column.csv; 20 cells, gravity in 10 steps.
+    // Height / l0 as in reference/hencky_column.csv; 20 cells, gravity in 10 steps.
     // The last number bounds the error: a few times the measured 1.5e-6, 2.3e-4, 2.4e-4.
     for (S, exact, bound) in [(0.04, 0.9807598284, 1e-5), (0.4, 0.8533052167, 5e-4), (1.0, 0.7279690463, 5e-4)] {
         for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar] {

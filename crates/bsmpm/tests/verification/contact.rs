@@ -1,4 +1,4 @@
-//! Faces that push and rub: Coulomb's closed forms, blows, lifting and coming down again.
+//! Contact at faces of the grid: closed forms of Coulomb friction, impacts, separation and closing.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

@@ -1,5 +1,4 @@
-//! Damping: that of the methods against their theory, one degree of freedom exactly and a mode of the elastic bar; that
-//! of materials (Kelvin-Voigt) by the same mode, in bodies that turn or flow, and in Newton's tangent.
+//! Numerical damping against its theory, and Kelvin-Voigt damping of vibrating, rotating and flowing bodies.
 
 use super::bar::{CELLS, PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
@@ -45,7 +44,7 @@ impl Scheme {
     }
 
     /// Amplification of (d, v dt, a dt^2) in a step of the length `turn` / omega, where of the points' v and a the part
-    /// `kept` reaches the nodes: 1 - (q+1) k^2 h^2 / 12 of a mode of the wave number k (method.md 3), 1 of a uniform
+    /// `kept` reaches the nodes: 1 - (q+1) k^2 h^2 / 12 of a mode of the wave number k (T3.5), 1 of a uniform
     /// one.
     fn amplification(self, turn: f64, kept: f64) -> Matrix3<f64> {
         let (alpha, beta, gamma) = self.parameters();

@@ -1,4 +1,4 @@
-//! Two elastic discs that fly into each other (Sulsky, Chen and Schreyer, 1994): they rebound, and part again.
+//! Rebound of two colliding elastic discs (Sulsky, Chen and Schreyer, 1994).
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::kinematics::PlaneStrain;
@@ -41,7 +41,7 @@ fn rebound(method: Stabilisation, steps: usize) -> f64 {
 
 #[test]
 fn discs_part_as_fast_with_short_steps_as_with_long_ones_unless_every_step_smooths() {
-    // method.md 3: none 0.85/0.89, f-bar 0.76/0.80, modified -0.02 (they stick), consistent 0.77/0.80.
+    // A prototype: none 0.85/0.89, f-bar 0.76/0.80, modified -0.02 (they stick), consistent 0.77/0.80.
     let [f_bar, consistent, modified] =
         [Stabilisation::FBar, Stabilisation::ConsistentFBar, Stabilisation::ModifiedFBar].map(|method| {
             let found = [60, 240].map(|steps| rebound(method, steps));

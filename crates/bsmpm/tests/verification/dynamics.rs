@@ -1,4 +1,4 @@
-//! Conservation and limits of the dynamic regime.
+//! Conservation laws and limits of dynamic analysis.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;

@@ -1,5 +1,4 @@
-//! Energy: the books close to the iteration's tolerance, every part says what it is named after, and known energies
-//! are found.
+//! Energy balance: the residual stays within the tolerance, and terms with known values are reproduced.
 
 use super::bar::{PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
@@ -99,7 +98,7 @@ fn the_bars_books_close_and_say_where_its_energy_went() {
         assert_eq!((flows.external, flows.plastic, flows.background, flows.penalty), (0.0, 0.0, 0.0, 0.0));
         assert!((left + flows.numerical() / start - 1.0).abs() <= 1e-10);
         match method {
-            // 0.549 of the energy is left (method.md 3), and smoothing has taken it.
+            // 0.549 of the energy is left (T3.5), and smoothing has taken it.
             Stabilisation::ModifiedFBar => assert!((flows.smoothing / start - 0.44).abs() <= 0.01),
             _ => assert_eq!(flows.smoothing, 0.0),
         }

@@ -1,4 +1,4 @@
-//! Extreme N06: a body whose edge enters a cell by next to nothing: stress inside it, and the system's condition.
+//! Body whose edge extends into a cell by a tiny amount: stress and condition number.
 
 use crate::support::scene::{Scene, axis, by_id, hencky};
 use crate::support::solver::Dense;

@@ -1,5 +1,4 @@
-//! Sides beside a free field: level ground moves as its own column and as waves in layers do, and what a body scatters
-//! leaves.
+//! Free-field sides: level ground moves like its column, and scattered waves leave.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

@@ -1,5 +1,4 @@
-//! Stress at the start: equilibrium where it must hold, displacements that count from there, layers that grow with
-//! depth.
+//! Initial stress: equilibrium, zero initial displacement, and properties that vary with depth.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

@@ -1,8 +1,8 @@
-//! The inf-sup constant of displacements and averaged dilations (Chapelle and Bathe, 1993, Comput. Struct. 47,
+//! Inf-sup constant of displacements and averaged volume changes (Chapelle and Bathe, 1993, Comput. Struct. 47,
 //! 537-545).
 //!
-//! beta^2 is the smallest eigenvalue other than 0 of sum_p w (S div u) div v = beta^2 sum_p w grad u : grad v, in a
-//! unit square whose edges are held: with S = A^T W^-1 A w that of B A^-1 B^T over the lumped mass of the pressures.
+//! beta² is the smallest non-zero eigenvalue of sum_p w (S div u) div v = beta² sum_p w grad u : grad v in a unit
+//! square with fixed edges, with S = A^T W^-1 A w.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

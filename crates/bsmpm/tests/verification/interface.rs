@@ -1,4 +1,4 @@
-//! Two layers of different stiffness or density under their weight: the stress beside the interface is known.
+//! Stress next to the interface of two layers of different stiffness or density under self-weight.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;

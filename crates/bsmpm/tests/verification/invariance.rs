@@ -1,4 +1,4 @@
-//! What must not matter: side, axis, place and units; and what must hardly matter: the soft background.
+//! Invariance of results to mirroring, axes, position and units, and weak dependence on the soft background.
 
 use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
 use bsmpm::background::Background;

@@ -1,4 +1,4 @@
-//! What F-bar is for: a nearly incompressible body neither locks nor oscillates (section 2.3).
+//! F-bar prevents locking and stress oscillation of a nearly incompressible body.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

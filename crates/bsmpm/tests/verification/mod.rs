@@ -1,5 +1,5 @@
 #![doc = include_str!("README.md")]
-//! Numbers after `measured` in the tests are what this machine gave.
+//! Comments after `measured` give the value on the development machine.
 
 mod absorbing;
 mod axisymmetric;

@@ -1,4 +1,4 @@
-//! Newton's method: quadratic convergence through plasticity and F-bar, and the same equilibrium as the secants'.
+//! Newton's method: quadratic convergence with plasticity and F-bar, and the same equilibrium as quasi-Newton.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;

@@ -1,6 +1,4 @@
-//! Uniform confined compression by a face that moves: sigma = M ln(l) / l.
-//!
-//! In one step: afterwards the body no longer touches the face of the grid, which does not move with it.
+//! Uniform confined compression by a moving face in one step: sigma = M ln(l) / l.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;

@@ -1,4 +1,4 @@
-//! The penalty of rigid strips is a means: what a collapse pressure feels of it falls as the penalty grows.
+//! Influence of the penalty of a rigid footing on the collapse pressure.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;

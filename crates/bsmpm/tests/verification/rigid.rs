@@ -1,4 +1,4 @@
-//! Rigid bodies of any polygon: friction, blows, Hertz, punches, lifting, and bodies that move freely.
+//! Rigid bodies: friction, impact, Hertz contact, punches, separation and free motion.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::rigid::Outline;

@@ -1,4 +1,4 @@
-//! Free motion and motion beside supports, with lumped and with consistent mass.
+//! Free rotation and motion near supports, with lumped and consistent mass.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

@@ -1,4 +1,4 @@
-//! Section forces and fields at places against closed forms: a column under its own weight, a beam that it bends.
+//! Section forces and fields at positions: a column under self-weight, and a bent beam.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

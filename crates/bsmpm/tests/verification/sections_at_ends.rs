@@ -1,4 +1,4 @@
-//! Section forces at what holds and loads a body, and less than the reach of a smeared cut from it, against statics.
+//! Section forces at and near supports and loads, against statics.
 
 use super::sections::{DENSITY, G, cut, weighed};
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,4 +1,4 @@
-//! Steady flow between surfaces that cut the cells, the skeleton at rest: the terms of drains against closed forms.
+//! Steady seepage between drained surfaces that cut cells, in a fixed skeleton, against closed forms.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

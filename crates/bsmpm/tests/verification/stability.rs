@@ -1,5 +1,4 @@
-//! A heavy, nearly incompressible column: its points integrate the geometric stiffness of the pressure so badly that it
-//! is an unstable equilibrium of the discrete system, from which round-off leads to a wrong height. It is refused.
+//! Nearly incompressible column with few points per cell: an unstable discrete equilibrium must be rejected.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

@@ -1,4 +1,4 @@
-//! Strips that rub and let go: a block that a strip presses and drags, and a footing that comes up and down again.
+//! Footings with friction and separation: a dragged block, and a footing that lifts and returns.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Contact, ContactReport, Path, Strip, StripContact, StripReport, Support, surface};

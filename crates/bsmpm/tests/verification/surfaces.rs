@@ -1,4 +1,4 @@
-//! Rigid strips, tractions and point loads: against exact stress, equilibrium of the whole, and steps that are cut.
+//! Rigid footings, tractions and point loads: exact stress, global equilibrium, and halved steps.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::background::Background;

@@ -1,4 +1,4 @@
-//! Consolidation of bodies whose drained and loaded surfaces cut the cells, and move through them.
+//! Consolidation of bodies whose drained and loaded surfaces cut cells and move through them.
 
 use super::{M, Plane, at, column, flowing, geometric, run, settlement};
 use crate::support::scene::{axis, hencky};

@@ -1,4 +1,4 @@
-//! A column with inertia under a load that comes at once: waves that the water damps (telegraph equation).
+//! Saturated column under a sudden load: damped waves of the telegraph equation.
 
 use super::{M, column, run, settlement};
 use bsmpm::energy::{Books, Budget, Stored};

@@ -1,4 +1,4 @@
-//! One state in all of a body: undrained, and sheared to failure.
+//! Uniform undrained states, and undrained shear to failure.
 
 use super::{LOAD_PARTS, M, Plane, at, column, flowing, run};
 use crate::support::scene::axis;

@@ -1,5 +1,4 @@
-//! Friction acts on the effective normal force, with the excess pore pressure of water that flows, too. A case refuses
-//! such water with interfaces that have friction; while strength is divided it is held, and acts as here.
+//! Friction by the effective normal force (T7.2), with excess pore pressure.
 
 use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};

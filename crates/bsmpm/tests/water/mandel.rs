@@ -1,5 +1,5 @@
-//! A block pressed by a rigid plate, drained at its sides: the pressure in the middle grows before it falls (Mandel,
-//! 1953; Cheng and Detournay, 1988). The plate's load is given, its way is found.
+//! Mandel's problem: consolidation below a rigid plate with prescribed load, drained at the sides (Mandel, 1953; Cheng
+//! and Detournay, 1988).
 
 use super::{Plane, WEIGHT, at, flowing, geometric};
 use crate::support::scene::{axis, hencky};

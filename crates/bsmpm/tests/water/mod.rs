@@ -1,4 +1,4 @@
-//! Water that flows through a skeleton which deforms, against closed forms.
+//! Coupled flow in a deforming skeleton, against closed forms.
 
 mod draining;
 mod dynamic;

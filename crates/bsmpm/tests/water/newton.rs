@@ -1,5 +1,4 @@
-//! Newton's method where water flows: the product is the derivative, the forces and the water fall with their squares,
-//! and steps that secants do not do.
+//! Newton's method with coupled flow: derivative, quadratic convergence, and steps for which secants fail.
 
 use super::{DENSITY, Plane, at, flowing};
 use crate::support::random::Random;

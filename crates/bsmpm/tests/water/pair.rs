@@ -1,5 +1,5 @@
-//! The pair of displacements and pressures: its inf-sup constant (Chapelle and Bathe, 1993), whole and cut; and that a
-//! rotation changes nothing.
+//! Inf-sup constant of displacements and pore pressures on whole and cut cells (Chapelle and Bathe, 1993), and
+//! invariance to rotation.
 
 use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};

@@ -1,5 +1,4 @@
-//! Soils that water does not fill, in a skeleton that is next to rigid: steady columns against the equation of Richards
-//! (1931), rain that runs off, and the discharge of a dam with a seepage face.
+//! Unsaturated soils: columns against the equation of Richards (1931), run-off of rain, and a dam with a seepage face.
 
 use super::{Plane, WEIGHT, at, run, through};
 use crate::support::scene::{Scene, axis, hencky};

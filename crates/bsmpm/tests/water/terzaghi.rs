@@ -1,4 +1,4 @@
-//! Consolidation in one direction of a column that is loaded at once and drained at its top (Terzaghi).
+//! One-dimensional consolidation of a column under a sudden load (Terzaghi).
 
 use super::{M, Plane, column, geometric, run, run_from, settlement};
 use bsmpm::grid::{Grid, KnotVector};

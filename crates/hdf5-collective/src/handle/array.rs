@@ -1,4 +1,4 @@
-//! Arrays of an open file: rows in and out, and what they are.
+//! Arrays of an open file: reading and writing of rows, and checks of type and storage.
 
 use std::ffi::c_int;
 use std::ptr;

@@ -1,4 +1,5 @@
-//! How a solve ended: PETSc reports success for failures of every kind.
+//! Outcome of a solve. PETSc's functions return success even if the solver did not converge, so the reason is checked
+//! here.
 
 use std::ptr;
 

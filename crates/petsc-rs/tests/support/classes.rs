@@ -1,5 +1,5 @@
-//! What is wrong with a linear system, and what each solver says of it: a class of its own, or what it gives is no
-//! solution and is seen not to be one.
+//! Defective linear systems, and the failure that each solver must report. If a solver reports success, the residual
+//! must show the failure.
 
 use crate::{LOCAL, entries, expect, poisson, solver, text, wavy};
 use petsc_rs::{Error, Ksp, Matrix, Petsc, Tolerances, Vector};

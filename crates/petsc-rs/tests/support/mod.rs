@@ -1,4 +1,4 @@
-//! What the test program needs of the process: environment, working directory, captured output.
+//! Process environment of the test program: variables, working directory and captured output.
 
 pub mod classes;
 pub mod shell;

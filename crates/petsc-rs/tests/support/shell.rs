@@ -1,4 +1,4 @@
-//! A preconditioner of the caller's own under KSP: it is called, its failures are KSP's, its panics the caller's.
+//! Tests of user-defined preconditioners in KSP: calls, failures and panics.
 
 use crate::{LOCAL, expect, poisson, text, wavy};
 use petsc_rs::{Error, Ksp, Matrix, PcFailure, Petsc, ShellPc, SolveInfo, Tolerances, Vector};

@@ -1,4 +1,4 @@
-//! Columns of the free field in a checkpoint: few points, the same on every rank, so that numbers in its text do.
+//! Free-field columns in a checkpoint.
 
 use super::{Row, rows, vectors};
 use bsmpm::points::{Number, Points};

@@ -1,8 +1,4 @@
-//! Factorised columns as they are kept, and the triangular solves with them.
-//!
-//! A solution reads every number twice and does little else, so that memory decides how long it takes: four columns at
-//! a time are kept from their first diagonal entry on, in single precision where that is enough. Products and sums are
-//! of double precision, so that a solution is a linear function of the right-hand side, that of a stiffness near by.
+//! Stores factorised columns in groups of four, because memory bandwidth limits triangular solutions.
 
 /// Columns that are kept, and worked on, together.
 const GROUP: usize = 4;

@@ -1,10 +1,5 @@
-//! Dense kernels of a front: Cholesky factorisation of its first columns, and what they leave to the rest.
-//! Column-major, lower triangle; what stands above the diagonal enters no sum.
-//!
-//! nalgebra's product (matrixmultiply) has a kernel for each instruction set: those of AVX2 with FMA, AVX-512 and ARM64
-//! add in the same order, each product fused, and give the same bits; an x86-64 without FMA (before 2013) gives others.
-//! A kernel without fused operations for all of them took 1.04 times the footing's CPU seconds and 1.02 times the
-//! column's in mid-flow (medians of three pairs), and logarithms of the C library would differ there all the same.
+//! Dense Cholesky factorisation of the first columns of a front, and update of the rest. Matrices are column-major;
+//! only the lower triangle is used. All processors with fused multiply-add (FMA) give the same bits.
 
 use nalgebra::{Dyn, MatrixView, MatrixViewMut};
 

@@ -1,8 +1,4 @@
-//! Order of elimination of one rank's unknowns: nested dissection of its box of nodes, without MPI or numbers.
-//!
-//! Splines of order q couple nodes up to q apart, so that q layers of nodes cut a box in two. Nodes that other ranks
-//! touch too come last. George, A. (1973), SIAM J. Numer. Anal. 10, 345-363; Liu, J. W. H. (1992), SIAM Rev. 34,
-//! 82-109.
+//! Elimination order by nested dissection (George, 1973; Liu, 1992), with separators of q layers of nodes (q: degree).
 
 use super::factor;
 use bsmpm::nodal::Nodal;

@@ -1,5 +1,4 @@
-//! Elimination of what ranks share: pairs of neighbours, pairs of pairs, up to all ranks. What a cut couples is a dense
-//! front, and every rank but the first has one of them; which rank does what when is fixed, so that all sums repeat.
+//! Eliminates nodes that ranks share, from pairs of neighbours up to all ranks.
 
 use super::factor::{self, Factor, Precision};
 use super::front;

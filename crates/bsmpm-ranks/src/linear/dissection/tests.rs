@@ -1,4 +1,4 @@
-//! Ranks are threads here: the same code, with channels instead of MPI.
+//! Tests the direct solver with threads in place of ranks.
 
 mod system;
 

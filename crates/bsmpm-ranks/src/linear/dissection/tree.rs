@@ -1,5 +1,4 @@
-//! Elimination and solution over the tree of a plan's parts: subtrees that are worth it on threads of their own. What a
-//! part hands to the one above it is added there in a fixed order, so that any number of threads finds the same bits.
+//! Elimination and solution on several threads, whose number changes no bit.
 
 use super::factor::{Factor, Room};
 use super::front;

@@ -1,4 +1,4 @@
-//! The additive Schwarz method on overlapping boxes of nodes: factors of the matrix's parts, of single precision.
+//! Additive Schwarz method on overlapping boxes of nodes.
 
 use super::Operator;
 use crate::linear::dissection::front;

@@ -1,4 +1,4 @@
-//! Splines of a grid by those of a coarser one, whose breakpoints are some of its own.
+//! Transfers nodal values between a grid and a coarser one.
 
 use super::Operator;
 use crate::stencil::Stencil;

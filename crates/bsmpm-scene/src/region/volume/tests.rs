@@ -1,4 +1,4 @@
-//! Volumes of points against closed forms.
+//! Compares volumes of material points with closed forms.
 
 use super::super::solid::Section;
 use super::super::{Raster, Surface};

@@ -1,4 +1,4 @@
-//! What crosses a surface: two that say different things of one part of it, more than the ground takes, and nothing.
+//! Checks drains and inflows for contradictions and capacity.
 
 use crate::case::{Acting, Case, Drain, DrainSite, Face, Flow, LoadedLine, Plate, Site};
 use crate::record::Record;

@@ -1,5 +1,4 @@
-//! Where the pressure and its gradient cannot be followed: soils of unlike permeability that meet inside cells, thin
-//! walls, and the flux in the cells of a surface.
+//! Warns of interfaces and thin walls whose pore pressures the grid cannot resolve.
 
 use crate::case::{Body, Case, Flow, Quantity};
 use crate::grid::GridAxis;

@@ -1,4 +1,4 @@
-//! How permeable a soil is.
+//! Validates the permeability of a soil.
 
 use crate::record::Record;
 use crate::report::Report;

@@ -1,4 +1,4 @@
-//! What is not shown to be right together with water that flows, and what is doubtful with it.
+//! Refuses combinations with pore-water flow that are not verified.
 
 use crate::case::{Acting, Body, Case, Drain, DrainSite, Flow, Initial, Stage, Support};
 use crate::grid::GridAxis;

@@ -1,4 +1,4 @@
-//! Places, lines, boxes and faces that histories refer to.
+//! Validates places, lines, boxes and faces of histories.
 
 use crate::case::Face;
 use crate::grid::GridSpec;

@@ -1,5 +1,4 @@
-//! C0 lines at the ends of strips and loaded segments, at the edges of plates, and at corners and edges of rigid
-//! bodies.
+//! C0 lines at ends of footings and loads, and at edges of rigid bodies.
 
 use super::{BESIDE, BEYOND, FoundLine, NAMES, grid_line};
 use crate::case::{Case, LoadedLine, MotionPath, Rigid, RigidShape, RigidSolid, Site};

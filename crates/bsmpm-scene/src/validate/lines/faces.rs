@@ -1,4 +1,4 @@
-//! C0 lines of a solid: planes of the grid on which bodies of unlike stiffness or density meet.
+//! C0 planes between bodies of different stiffness or density in 3-D.
 
 use super::{BESIDE, FoundLine, ROUNDING, UNLIKE, differ, doubt, grid_line, interface_of};
 use crate::case::{Body, Case};

@@ -1,4 +1,4 @@
-//! Settings with which a shear band was not shown to dissipate the energy that `band_width` is scaled for.
+//! Warns of settings for which `band_width` is not verified.
 
 use super::law::CELLS_OF_BAND;
 use crate::case::{Case, Geometry, Rigid, Site};
@@ -10,7 +10,7 @@ use crate::words::Word;
 use bsmpm::material::Material;
 use bsmpm::stabilisation::Stabilisation;
 
-/// Warns of every material with a `band_width` outside of what `cases/results/softening.md` measured.
+/// Warns of every material with a `band_width` outside of what was verified.
 pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let softens = |number: usize, record: &Record| {
         record.gives("band_width") && case.is_followed(number) && falls(&case.materials[number].material)

@@ -1,5 +1,4 @@
-//! Gravity that does not point down. An incline by turned gravity is meant; so is gravity towards a side on which the
-//! case rests.
+//! Warns of gravity that does not point down.
 
 use super::length;
 use crate::case::{Case, Support};

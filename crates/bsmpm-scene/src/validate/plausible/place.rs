@@ -1,4 +1,4 @@
-//! Bodies that are tiny in their grid, as with coordinates in another unit, and histories at places without material.
+//! Warns of tiny bodies and of histories without material.
 
 use crate::case::{Body, Case};
 use crate::record::Record;

@@ -1,5 +1,4 @@
-//! Slopes of soil without cohesion that are steeper than its friction angle: they fail under their own weight (the
-//! factor of safety of an infinite slope is the ratio of the tangents).
+//! Warns of cohesionless slopes steeper than the friction angle.
 
 use crate::case::{Body, Case, Geometry};
 use crate::record::Record;

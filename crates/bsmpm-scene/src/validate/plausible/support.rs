@@ -1,5 +1,4 @@
-//! Bodies of a quasi-static analysis that nothing supports: they are apart from all others, and the stiffness is
-//! singular.
+//! Warns of unsupported bodies in a quasi-static analysis.
 
 use crate::case::{Case, Stage};
 use crate::connected::{near_pairs, pieces_of_pairs};

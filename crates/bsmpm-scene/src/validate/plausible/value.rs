@@ -1,4 +1,4 @@
-//! Values without a unit that look like another one: kPa typed as Pa, radians as degrees.
+//! Warns of values that appear to be in another unit.
 
 use super::Scale;
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! Rigid bodies and the faces of the grid, which hold material and not them.
+//! Warns of rigid bodies that reach the faces of the grid.
 
 use super::{OVERLAP, Outline, surfaces};
 use crate::case::{Case, Face, Geometry, Rigid, RigidShape, Support};

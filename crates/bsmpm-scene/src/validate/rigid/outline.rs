@@ -1,4 +1,4 @@
-//! Thickness and corners of the outline of a rigid body.
+//! Thickness and sharpest corner of a rigid body.
 
 use crate::validate::site::normal;
 use bsmpm::boundary::rigid::Outline;

@@ -1,4 +1,4 @@
-//! Rigid bodies in space: they rest, or move on a way without turning.
+//! Validates rigid bodies in 3-D.
 
 use super::super::shape::{cuboid, raster};
 use super::super::site::AroundStrip;

@@ -1,4 +1,4 @@
-//! Shapes in space.
+//! Validates shapes in 3-D.
 
 use super::super::place;
 use super::{BeyondSymmetry, BodyShape};

@@ -1,4 +1,4 @@
-//! What stages may change in ground with absorbing or free-field boundaries.
+//! Checks stages with absorbing or free-field boundaries.
 
 use crate::case::{Acting, Case, Stage, Support};
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! Which trials are made, and that no more than the clock decides how many at a time.
+//! Tests that parallel jobs do not change a search.
 
 use std::fs;
 use std::os::unix::process::ExitStatusExt;

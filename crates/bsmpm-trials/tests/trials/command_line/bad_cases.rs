@@ -1,5 +1,4 @@
-//! Malformed cases end a run on two ranks with 65, with all places and keys, said once, and leave nothing. One row a
-//! kind: what there is of each is tested in `bsmpm-scene/tests/bad_cases` and `bsmpm-scene/tests/overrides`.
+//! Tests that malformed cases end with exit code 65 and write nothing.
 
 use crate::support::Scratch;
 use crate::support::cases::{COLUMN, changed};

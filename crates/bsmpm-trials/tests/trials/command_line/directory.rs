@@ -1,4 +1,4 @@
-//! The output directory: one run each, and nothing is deleted but what an older run wrote.
+//! Tests the choice and protection of the output directory.
 
 use crate::support::Scratch;
 use crate::support::cases::COLUMN;

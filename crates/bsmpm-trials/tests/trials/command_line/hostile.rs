@@ -1,5 +1,4 @@
-//! Input that means harm, or is as large as if it did: sizes, names, files that are none, and what libraries would read
-//! behind the program's back (rows I19 to I23, F37, S1 to S3).
+//! Tests hostile or huge input (rows I19 to I23, F37, S1 to S3).
 
 use crate::support::Scratch;
 use crate::support::cases::{COLUMN, changed};

@@ -1,4 +1,4 @@
-//! The log: rank 0, stderr; for a person at a terminal, for a batch job, for programs.
+//! Tests the log at a terminal, in a batch job and as JSON.
 
 use crate::support::cases::{COLUMN, endless};
 use crate::support::results::manifest;

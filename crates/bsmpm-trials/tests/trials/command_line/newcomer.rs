@@ -1,5 +1,4 @@
-//! Wrong inputs of a newcomer that need a run (the others: `bsmpm-scene/tests/newcomer`): a case that was warned of as
-//! probably not meant, and then fails, says so once more; files that are no case; directories; restarts.
+//! Tests mistakes of new users that need a run.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

@@ -1,4 +1,4 @@
-//! Options of PETSc come after `--` and from nowhere else, and none of them writes or reads a file.
+//! Tests PETSc options after `--`.
 
 use crate::support::Scratch;
 use crate::support::cases::COLUMN;

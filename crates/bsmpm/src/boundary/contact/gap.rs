@@ -1,4 +1,4 @@
-//! How far the material is from a face, as its points tell.
+//! Gap between the material and a face of the grid (T7.4).
 
 use crate::boundary::Boundary;
 use crate::grid::{Grid, Shape};

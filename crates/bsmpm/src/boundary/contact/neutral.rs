@@ -1,9 +1,4 @@
-//! Where all nodes of a face slide, and not all in one direction, some between them must stick.
-//!
-//! A heap that spreads on a face which alone holds it along itself slides outwards on both sides of it. Between the two
-//! a node sticks, whose friction is what balance asks for: with all nodes sliding the heap is free to move along the
-//! face, and the stiffness is singular. Where that node would need more than Coulomb's limit, it slides after the next
-//! correction, and its neighbour sticks.
+//! Neutral nodes. If all nodes of a face slide outwards, the node where slip changes direction is set to stick.
 
 use super::Contacts;
 use crate::boundary::coulomb::Status;

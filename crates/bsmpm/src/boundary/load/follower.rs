@@ -1,12 +1,5 @@
-//! Follower loads: pressures, which turn and stretch with the surface, as it is at the end of the step that is sought.
-//!
-//! The surface is made of the pieces that a load's points stand for. The material that these are anchored to carries
-//! their corners, `x_c = x_p + F_p (X_c - X_p)`, and corners that pieces of one load have in common go by the mean:
-//! what it presses with in all is decided by its edge alone. A piece's area by its own F (Nanson) is that of the
-//! material a part of a cell below it, and falls short of the surface's by as much times the curvature: a tube of 0.5
-//! and 1 m in 8 cells was pressed with 1 % too little at 100 kPa (E = 1 MPa), 4.6 % at 150. And pressures of the step's
-//! start, or that went on as in the step before, let a tube grow beyond the pressure that it bears, step by step, each
-//! of them in balance.
+//! Follower loads: pressures on the deformed surface (T6.9), evaluated in each iteration, without a derivative in the
+//! stiffness.
 
 use super::Load;
 use crate::boundary::anchor::Anchored;

@@ -1,4 +1,4 @@
-//! A rigid body by itself: where it is, where it goes, and what acts on it besides the soil.
+//! Data of a rigid body: position, motion, mass, and forces other than those of the soil.
 
 use super::outline::Outline;
 use crate::schedule::between;

@@ -1,4 +1,4 @@
-//! How much of its F's reach a point has: what rigid bodies leave it at the start, and what the steps have made of it.
+//! Factor e_p of the reach of material points near a rigid body (T7.7), set at the start and after each step.
 
 use super::ROUNDING;
 use super::RigidContacts;

@@ -1,9 +1,5 @@
-//! Motions of a rigid body in one step: those on its path, and those that follow from forces.
-//!
-//! With inertia the free motions follow [Newmark's](Newmark) formulas of the case. A step in which the body meets
-//! material that it did not touch before takes backward Euler (β = γ = 1), which loses the energy of the blow: the
-//! case's formulas would throw it back. So do the step after it and the first one, which have no acceleration to start
-//! with: that of a blow is one of the step's length.
+//! Prescribed or free motion of a rigid body in a step (T7.10). Free motion uses [`Newmark`], and backward Euler in the
+//! first step, at an impact and in the next step.
 
 use super::body::{MOTIONS, RigidBody, RigidState};
 use super::surroundings::Surroundings;

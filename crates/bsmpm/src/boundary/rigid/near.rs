@@ -1,4 +1,4 @@
-//! Which points are near a rigid body in a step, how far from it, and what they start the step as.
+//! Contact detection: points near a rigid body, gaps (T7.7), contact positions (T7.8) and stiffness (T7.9).
 
 use super::motion::BodyInStep;
 use super::point::{ContactStatus, RigidPoint, along, tangents};

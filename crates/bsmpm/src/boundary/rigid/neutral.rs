@@ -1,10 +1,5 @@
-//! Where all points under a free body slide, and not all in one direction, one of them must stick.
-//!
-//! Ground that spreads under a block slides outwards on both sides of it. Between the two a point sticks, whose
-//! friction is what balance asks for: with all points sliding nothing resists a motion of the block along its base.
-//! Without inertia the point that slides least is taken to stick. Where it would need more than Coulomb's limit, the
-//! next correction lets it slide and takes the next one, so that the neutral point moves along the base. If all points
-//! slide in one direction, nothing holds the body.
+//! Neutral points. If all points below a free rigid body slide outwards (quasi-static), the one with the least slip is
+//! set to stick.
 
 use super::body::MOTIONS;
 use super::point::{ContactStatus, RigidPoint};

@@ -1,4 +1,4 @@
-//! The outline of a rigid body: how far a place is from it, and what the body weighs by its shape.
+//! Outlines of rigid bodies: distance and normal at a position, area, centroid and moments.
 
 use super::terrain::Terrain;
 use crate::tensor::Vector;

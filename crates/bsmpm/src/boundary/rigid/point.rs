@@ -1,4 +1,4 @@
-//! A material point near a rigid body in one step: the normal force and friction on it.
+//! A material point in contact with a rigid body: force (T7.9), friction (T7.3), and correction of the status.
 
 use crate::nodal::Nodal;
 use crate::tensor::Vector;

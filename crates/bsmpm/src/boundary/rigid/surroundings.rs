@@ -1,4 +1,4 @@
-//! What of the scene rigid bodies see in a step.
+//! Data of a step that rigid bodies use.
 
 use super::body::{RigidBody, RigidState};
 use crate::grid::{Grid, Shape};

@@ -1,4 +1,4 @@
-//! A rigid surface over the plane of x and y: heights at the posts of a regular raster, bilinear between them.
+//! Rigid terrain in three dimensions: bilinear heights between the posts of a raster.
 
 use crate::tensor::Vector;
 

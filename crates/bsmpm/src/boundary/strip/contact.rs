@@ -1,4 +1,4 @@
-//! The law at a point of a strip that the material slides along and separates from.
+//! Contact law of a surface point of a footing that can slide or separate (T7.5), (T7.6).
 
 use crate::boundary::coulomb::{Contact, Status, transverse};
 use crate::tensor::Vector;
@@ -7,9 +7,7 @@ use crate::tensor::Vector;
 /// the tolerance of the forces themselves.
 const TURNED: f64 = 100.0;
 
-/// Contact of a strip.
-///
-#[doc = include_str!("contact.md")]
+/// Contact of a strip (T7.5), (T7.6).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripContact<const D: usize> {
     /// friction, and whether material comes off it

@@ -1,5 +1,4 @@
-//! A point of a strip that holds material in one step: what it carries, its traction, and what it adds to the sums that
-//! the strip's report is made of.
+//! A surface point of a footing during a step: traction (T6.5) and contribution to the report.
 
 use super::ContactState;
 use crate::boundary::coulomb::{ContactReport, Status};

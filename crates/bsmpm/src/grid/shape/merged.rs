@@ -1,11 +1,5 @@
-//! Splines of degree q - 1 on pairs of cells inside a body, and on the cells at its edges: an average over both.
-//!
-//! The pair (displacements of degree q, dilations averaged by splines of degree q - 1 on the same cells) has pressure
-//! modes: its inf-sup constant falls with h. On every second grid line it does not (sub-grid method: Bressan and
-//! Sangalli, 2013, IMA J. Numer. Anal. 33, 629-651). Beside a free edge, where cells are cut, so coarse an average
-//! leaves the edge too soft. So function k on the pairs takes part only where its whole support lies inside the body,
-//! and function j on the cells with what the others leave it, rho_j = 1 - sum_k r_kj: a partition of unity everywhere,
-//! and an average that is still symmetric.
+//! Splines of degree q - 1 for the average of `subgrid-f-bar` (T3.4): on pairs of cells inside a body, on single cells
+//! at its edges. All functions sum to one.
 
 use super::Shape;
 use crate::grid::paired::Paired;

@@ -1,4 +1,4 @@
-//! The functions of a point at the nodes of its cell, as products of its rows.
+//! Shape functions of one material point at the nodes of its cell, as products over the axes.
 
 use crate::tensor::Vector;
 

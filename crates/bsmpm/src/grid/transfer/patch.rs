@@ -1,5 +1,4 @@
-//! Gather and scatter with gradients within a patch, compiled for each instruction set: the sums of a point are left to
-//! the compiler, those of nodes stand side by side.
+//! Transfers with gradients for the points of one cell, compiled for each instruction set.
 
 use super::PatchBlock;
 use crate::grid::shape::PointSupport;

@@ -1,5 +1,4 @@
-//! The passes of a scalar field with its gradient, as the pore pressure has them, on the splines of degree q - 1 for q
-//! above 1: constant ones have no gradient.
+//! Transfers of pore pressure and its gradient on splines of degree q - 1, for q above 1.
 
 use super::{MOST_NODES, PatchBlock, at_points, gather, scatter};
 use crate::grid::shape::with_width;

@@ -1,8 +1,4 @@
-//! Eigenvalues and axes of any symmetric tensor, without a branch, in lanes as for one point.
-//!
-//! After Scherzinger and Dohrmann (2008): of the deviator first the eigenvalue that is most distinct from the others,
-//! whose axis is well conditioned whatever the gap between these; then one exact rotation in the plane beside it. The
-//! eigenvalue is a root of a cubic between √3 and 2 in units of √(J₂/3), found by Newton's method instead of a cosine.
+//! Eigenvalues and axes of any symmetric tensor without branches, after Scherzinger and Dohrmann (2008).
 
 use super::{Turn, tangent};
 use crate::real::Real;

@@ -1,4 +1,4 @@
-//! The closed form against cyclic Jacobi rotations, which need no argument: their oracle.
+//! Comparison of eigenvalues with cyclic Jacobi rotations.
 
 use super::*;
 use nalgebra::{Matrix3, Rotation3, Vector3};

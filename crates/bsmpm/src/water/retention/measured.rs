@@ -1,4 +1,4 @@
-//! A measured retention curve: rows, and the monotone curve between them.
+//! Measured retention curve, interpolated by monotone cubics.
 
 /// Rows of suction head, m, effective saturation and relative permeability, from the full soil on, with cubics between
 /// that rise nowhere (Fritsch and Butland 1984); constant beyond the last row.

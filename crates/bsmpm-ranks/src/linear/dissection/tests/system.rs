@@ -1,4 +1,4 @@
-//! Systems whose solution is known, and ranks that are threads.
+//! Linear systems with known solutions.
 
 use super::super::Dissection;
 use super::super::factor::Precision;
