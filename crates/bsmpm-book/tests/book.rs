@@ -62,7 +62,13 @@ fn assert_cases_are_valid(text_of: impl Fn(&Block) -> Result<String, String>) {
                 "{place}: appended to nothing, or written twice"
             );
             file.push_str(&text_of(&block).unwrap_or_else(|fault| panic!("{place}: {fault}")));
-            match (Case::from_text(name, file, &[]), block.is("wrong")) {
+            // Commands of the chapter make its data files.
+            if file.contains("{ file = ") {
+                continue;
+            }
+            let has_tests = file.contains("[element.");
+            let read = if has_tests { Case::of_element_tests } else { Case::from_bytes };
+            match (read(name, file.as_bytes(), &[]), block.is("wrong")) {
                 (Ok(_), false) | (Err(_), true) => cases += 1,
                 (Ok(_), true) => panic!("{place}: a valid case is called wrong"),
                 (Err(errors), false) => panic!("{place}: {}", errors[0]),
@@ -169,7 +175,10 @@ fn every_chapter_is_in_the_summary() {
 fn every_chapter_has_one_title() {
     for chapter in chapters().unwrap() {
         let titles = prose(&chapter.text).lines().filter(|line| line.starts_with("# ")).count();
-        assert!(titles == 1 && chapter.text.starts_with("# "), "{} begins with its only title", chapter.file);
+        // A page that a program writes says so first.
+        let text = chapter.text.trim_start_matches(|c| c != '#');
+        let is_first = chapter.text.starts_with("# ") || chapter.text.starts_with("<!--") && text.starts_with("# ");
+        assert!(titles == 1 && is_first, "{} begins with its only title", chapter.file);
     }
 }
 

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
@@ -27,7 +27,7 @@ pub use matrix::Depth;
 use matrix::{MatrixRun, MatrixStudy, ValidationMatrix};
 use measured::{Lack, MeasuredNumber};
 use runs::{Launcher, MatrixOutcome};
-use table::{RowVerdict, TableRow};
+use table::{RowVerdict, TableFigure, TableRow};
 
 /// What to validate.
 #[derive(Clone, Debug, Args)]
@@ -83,6 +83,7 @@ pub fn run(arguments: &ValidateArguments, mut report: impl FnMut(&str)) -> Resul
     launch::make(&arguments.output)?;
     let launcher = Launcher { solver, base, output: &arguments.output, force: arguments.force };
     let mut rows: Vec<TableRow> = Vec::new();
+    let mut figures: Vec<TableFigure> = Vec::new();
     let mut undrawn = 0;
     for MatrixPart { study, runs, rows: wanted } in parts {
         let mut outcomes = BTreeMap::new();
@@ -90,14 +91,17 @@ pub fn run(arguments: &ValidateArguments, mut report: impl FnMut(&str)) -> Resul
             outcomes.insert(run.name.clone(), launcher.outcome(study, run)?);
         }
         let begin = rows.len();
-        rows.extend(wanted.into_iter().map(|row| judged(study, row, &outcomes)));
+        rows.extend(wanted.into_iter().map(|row| {
+            let case = path_between(&arguments.output, &base.join(case_of(study, row)));
+            judged(study, row, &outcomes, case)
+        }));
         report(&table::text(&study.title, &rows[begin..]));
-        write(&arguments.output.join("table.md"), &table::markdown(&rows))?;
-        write(&arguments.output.join("table.csv"), &table::csv(&rows))?;
-        for reason in draw(study, &outcomes, base, &arguments.output) {
+        for reason in draw(study, &outcomes, base, &arguments.output, &mut figures) {
             undrawn += 1;
             report(&format!("  {reason}"));
         }
+        write(&arguments.output.join("table.md"), &table::markdown(&rows, &figures))?;
+        write(&arguments.output.join("table.csv"), &table::csv(&rows))?;
     }
     let count = |is: fn(RowVerdict) -> bool| rows.iter().filter(|row| is(row.verdict)).count();
     Ok(MatrixCounts {
@@ -132,26 +136,71 @@ fn parts<'a>(matrix: &'a ValidationMatrix, arguments: &ValidateArguments) -> Res
     Err(Error::Usage { reason })
 }
 
-/// Draws what a study wants; what could not be drawn, and why, is no reason to leave the other studies.
-fn draw(study: &MatrixStudy, outcomes: &BTreeMap<String, MatrixOutcome>, base: &Path, output: &Path) -> Vec<String> {
-    let figures = study.figure.iter().filter_map(|figure| {
-        let drawn = figure::draw(figure, &study.title, outcomes, base, output);
-        drawn.err().map(|error| format!("{} is not drawn: {error}", figure.file))
-    });
+/// Draws what a study wants and adds its curves to `figures`; returns what could not be drawn, and why, which is no
+/// reason to leave the other studies.
+fn draw(
+    study: &MatrixStudy,
+    outcomes: &BTreeMap<String, MatrixOutcome>,
+    base: &Path,
+    output: &Path,
+    figures: &mut Vec<TableFigure>,
+) -> Vec<String> {
+    let mut undrawn = Vec::new();
+    for figure in &study.figure {
+        match figure::draw(figure, &study.title, outcomes, base, output) {
+            Ok(true) => {
+                let caption = format!("{}: {}", study.title, figure.axes());
+                figures.push(TableFigure { theme: study.theme.clone(), caption, file: figure.file.clone() });
+            }
+            Ok(false) => {}
+            Err(error) => undrawn.push(format!("{} is not drawn: {error}", figure.file)),
+        }
+    }
     let bodies = study.plot.iter().filter_map(|plot| {
         let drawn = draw_body(plot, outcomes, output);
         drawn.err().map(|error| format!("{} of {} is not drawn: {error}", plot.field, plot.run))
     });
-    figures.chain(bodies).collect()
+    undrawn.extend(bodies);
+    undrawn
 }
 
-/// The number of a row and what it is worth.
-fn judged(study: &MatrixStudy, row: &matrix::MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>) -> TableRow {
+/// The case file of the last run of a row, relative to the matrix.
+fn case_of<'a>(study: &'a MatrixStudy, row: &matrix::MatrixRow) -> &'a str {
+    let run = study.run.iter().find(|run| Some(&*run.name) == row.last_run());
+    run.and_then(|run| run.case.as_ref()).unwrap_or(&study.case)
+}
+
+/// The path of a file from a directory, with `/` between its parts. Links are not resolved.
+fn path_between(directory: &Path, file: &Path) -> String {
+    let parts = |path: &Path| {
+        let mut parts: Vec<String> = Vec::new();
+        for part in std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).components() {
+            match part {
+                Component::ParentDir => _ = parts.pop(),
+                Component::Normal(name) => parts.push(name.to_string_lossy().into_owned()),
+                Component::Prefix(_) | Component::RootDir | Component::CurDir => {}
+            }
+        }
+        parts
+    };
+    let (from, to) = (parts(directory), parts(file));
+    let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    let up = vec!["..".to_owned(); from.len() - shared];
+    [&up, &to[shared..]].concat().join("/")
+}
+
+/// The number of a row and what it is worth; `case` is the path of its case file for the table.
+fn judged(
+    study: &MatrixStudy,
+    row: &matrix::MatrixRow,
+    outcomes: &BTreeMap<String, MatrixOutcome>,
+    case: String,
+) -> TableRow {
     let found = measure::value(row, outcomes);
     let of_row: Vec<&MatrixOutcome> = row.runs().iter().filter_map(|name| outcomes.get(*name)).collect();
     let failed = of_row.iter().find_map(|outcome| outcome.failure.clone());
     let verdict = verdict(row, &found, failed.is_some());
-    let (ours, remark) = match found {
+    let (value, remark) = match found {
         Ok(measured) => (Some(measured.value), measured.remark),
         Err(Lack::NotReached(reason) | Lack::Other(reason)) => (None, Some(reason)),
     };
@@ -160,17 +209,24 @@ fn judged(study: &MatrixStudy, row: &matrix::MatrixRow, outcomes: &BTreeMap<Stri
     remarks.extend(failed);
     remarks.extend(of_row.iter().filter_map(|outcome| outcome.stopped.clone()));
     remarks.dedup();
+    let last = row.last_run().and_then(|name| outcomes.get(name)).map(|outcome| &outcome.run);
+    let sizes = last.and_then(|run| run.manifest.as_ref()).map(|manifest| &manifest.sizes);
     TableRow {
+        theme: study.theme.clone(),
         study: study.title.clone(),
         quantity: row.quantity.clone(),
-        reference: row.reference,
+        case,
+        published: row.reference,
         source: row.source.clone(),
-        ours,
-        wanted: row.wanted(),
+        value,
+        scale: row.difference_scale(),
+        tolerance: row.wanted(),
         verdict,
+        reason: row.known.as_ref().map(|known| known.why.clone()),
         remark: remarks.join("; "),
         codes: runs::codes(&of_row),
-        cost: of_row.iter().map(|outcome| outcome.run.cost).sum(),
+        cells: sizes.and_then(|sizes| sizes.get("cells")).copied(),
+        cost: last.map(|run| run.cost).unwrap_or_default(),
     }
 }
 
@@ -212,3 +268,16 @@ fn write(path: &Path, text: &str) -> Result<(), Error> {
 
 #[cfg(test)]
 mod plausible;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_leads_from_the_table_to_the_case() {
+        let between = |directory: &str, file: &str| path_between(Path::new(directory), Path::new(file));
+        assert_eq!(between("target/validation", "cases/validation/../footing.toml"), "../../cases/footing.toml");
+        assert_eq!(between("/a/b", "/a/c/d.toml"), "../c/d.toml");
+        assert_eq!(between(".", "./d.toml"), "d.toml");
+    }
+}

@@ -8,14 +8,14 @@ use super::runs::MatrixOutcome;
 use crate::Error;
 use crate::compare::{self, ChartLevel};
 
-/// Draws a figure of the runs that left something.
+/// Draws a figure of the runs that left something; false if none did.
 pub(super) fn draw(
     figure: &Figure,
     title: &str,
     outcomes: &BTreeMap<String, MatrixOutcome>,
     base: &Path,
     output: &Path,
-) -> Result<(), Error> {
+) -> Result<bool, Error> {
     let left = |name: &String| outcomes.get(name).filter(|outcome| outcome.run.has_rows());
     let (mut directories, mut labels, mut x_values) = (Vec::new(), Vec::new(), Vec::new());
     for name in &figure.runs {
@@ -35,7 +35,7 @@ pub(super) fn draw(
         }
     }
     if directories.is_empty() {
-        return Ok(());
+        return Ok(false);
     }
     let lines = figure.lines.iter().map(|(value, text)| ChartLevel { value: *value, text: text.clone() });
     compare::run(&compare::CompareArguments {
@@ -57,5 +57,5 @@ pub(super) fn draw(
         table: false,
         at: Vec::new(),
     })
-    .map(|_| ())
+    .map(|_| true)
 }

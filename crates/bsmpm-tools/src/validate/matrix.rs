@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::expand::expand;
+use super::table::DifferenceScale;
 use crate::Error;
 use crate::report::number;
 
@@ -33,6 +34,9 @@ pub(super) struct ValidationMatrix {
 #[serde(deny_unknown_fields)]
 pub(super) struct MatrixStudy {
     pub title: String,
+    /// heading of the table under which it stands
+    #[serde(default = "other")]
+    pub theme: String,
     /// relative to the matrix
     pub case: String,
     /// overrides of all its runs
@@ -226,6 +230,10 @@ fn time() -> String {
     "time".to_owned()
 }
 
+fn other() -> String {
+    "Other problems".to_owned()
+}
+
 impl ValidationMatrix {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(Error::unread("reference", path))?;
@@ -240,6 +248,13 @@ impl ValidationMatrix {
 }
 
 impl Figure {
+    /// What it shows: the vertical over the horizontal axis.
+    pub fn axes(&self) -> String {
+        let x = self.x_label.as_ref().unwrap_or(&self.x);
+        let y = self.y_label.as_ref().unwrap_or(&self.y);
+        format!("{y} against {x}")
+    }
+
     /// Names the runs of curves that are named alike.
     fn name_runs(&mut self) {
         let Some(alike) = self.alike.take() else { return };
@@ -265,6 +280,28 @@ impl MatrixRow {
         self.run.iter().chain(&self.against).chain(orders).map(String::as_str).collect()
     }
 
+    /// The run that its cells and seconds are of: of several grids the finest.
+    pub fn last_run(&self) -> Option<&str> {
+        let of_grids = self.order.iter().chain(&self.extrapolated).flat_map(|order| &order.runs);
+        of_grids.last().or(self.run.as_ref()).map(String::as_str)
+    }
+
+    /// What the difference from the published value is given in: as its tolerance.
+    pub fn difference_scale(&self) -> DifferenceScale {
+        let has_bounds = self.min.is_some() || self.max.is_some();
+        match self.tolerance {
+            None if has_bounds => DifferenceScale::None,
+            _ => DifferenceScale::Published,
+        }
+    }
+
+    /// Half of the width of bounds that are symmetric about the published value.
+    fn half_width(&self) -> Option<f64> {
+        let (published, (min, max)) = self.reference.zip(self.min.zip(self.max))?;
+        let half = (max - min) / 2.0;
+        (self.tolerance.is_none() && (published - (min + half)).abs() <= 1e-3 * half).then_some(half)
+    }
+
     /// Whether it can pass and fail.
     pub fn is_judged(&self) -> bool {
         self.tolerance.is_some() || self.min.is_some() || self.max.is_some()
@@ -281,11 +318,14 @@ impl MatrixRow {
 
     /// The bounds in words.
     pub fn wanted(&self) -> String {
+        if let Some(half) = self.half_width() {
+            return format!("± {}", number(half));
+        }
         let tolerance = self.tolerance.map(|tolerance| format!("{} %", number(100.0 * tolerance)));
         let bounds = match (self.min, self.max) {
             (None, None) => None,
-            (Some(min), None) => Some(format!(">= {min}")),
-            (None, Some(max)) => Some(format!("<= {max}")),
+            (Some(min), None) => Some(format!("at least {min}")),
+            (None, Some(max)) => Some(format!("at most {max}")),
             (Some(min), Some(max)) => Some(format!("{min} to {max}")),
         };
         tolerance.into_iter().chain(bounds).collect::<Vec<_>>().join(", ")

@@ -113,12 +113,17 @@ fn rows_are_judged_and_written_with_their_figures() {
     let text = printed(&output);
     assert!(output.status.success(), "{output:?}");
     assert_eq!(text.lines().last(), Some("1 passed, 0 failed"));
-    assert!(text.contains("FAIL, known") && text.contains("it is meant to be") && !text.contains("fine run"), "{text}");
+    assert!(
+        text.contains("known failure") && text.contains("it is meant to be") && !text.contains("fine run"),
+        "{text}"
+    );
     let calls = fs::read_to_string(dir.path().join("calls.txt")).unwrap();
     assert_eq!(calls.lines().count(), 1);
     assert!(calls.starts_with("case.toml --set solver.background=1e-3 --set stabilisation.method=f-bar "), "{calls}");
     let made = dir.path().join("out");
-    assert!(fs::read_to_string(made.join("table.md")).unwrap().contains("| penetration at half time | 0.975 |"));
+    let document = fs::read_to_string(made.join("table.md")).unwrap();
+    assert!(document.contains("| A footing: penetration at half time | [`case.toml`](../case.toml) |"), "{document}");
+    assert!(document.contains("known failure: it is meant to be") && !document.contains("reported"), "{document}");
     assert_eq!(fs::read_to_string(made.join("table.csv")).unwrap().lines().count(), 4);
     assert!(made.join("curve.png").exists());
 }
@@ -144,11 +149,11 @@ fn a_failed_row_and_a_failed_run_fail_the_validation() {
 fn what_is_known_to_fail_fails_in_its_band_and_nowhere_else() {
     let dir = tempfile::tempdir().unwrap();
     for (part, by, last, reported) in [
-        ("min = 1.9, max = 2.1", "min = 2.1, max = 2.2", "1 passed, 1 failed", " FAIL "),
-        ("min = 1.9, max = 2.1", "min = 1.0, max = 1.9", "1 passed, 1 failed", " FAIL "),
-        ("max      = 0.1", "max      = 2.0", "1 passed, 1 failed", "FAIL, holds now"),
-        ("column   = \"penetration\"\nmax", "column   = \"nothing\"\nmax", "1 passed, 1 failed", " FAIL "),
-        ("stabilisation.method=f-bar\"]", "stop=80\"]\nmay_stop = true", "1 passed, 1 failed", "FAIL, not reached"),
+        ("min = 1.9, max = 2.1", "min = 2.1, max = 2.2", "1 passed, 1 failed", " FAILED "),
+        ("min = 1.9, max = 2.1", "min = 1.0, max = 1.9", "1 passed, 1 failed", " FAILED "),
+        ("max      = 0.1", "max      = 2.0", "1 passed, 1 failed", "FAILED, passes now"),
+        ("column   = \"penetration\"\nmax", "column   = \"nothing\"\nmax", "1 passed, 1 failed", " FAILED "),
+        ("stabilisation.method=f-bar\"]", "stop=80\"]\nmay_stop = true", "1 passed, 1 failed", "FAILED, not reached"),
     ] {
         let matrix = MATRIX.replacen(part, by, 1).replace("0.4875\nreference = 0.975", "0.2\nreference = 0.4");
         prepare(dir.path(), &matrix);
@@ -348,18 +353,20 @@ fn rows_are_taken_from_a_run_as_far_as_it_came() {
     assert!(row("mean depth").contains(" 4.2 "), "{text}");
     assert!(row("deeper, reported").contains(" none ") && row("deeper, reported").contains(" not reached "), "{text}");
     assert!(
-        row("deeper, judged").contains("FAIL, not reached") && row("judged").contains("penetration 0.95"),
+        row("deeper, judged").contains("FAILED, not reached") && row("judged").contains("penetration 0.95"),
         "{text}"
     );
     assert!(row("deeper, reported").contains("stopped at t = 0.4750"), "{text}");
     // What has no end says nothing about the whole, and that a solver gives up is no failure load.
-    assert!(row("largest to its end").contains("FAIL, not reached") && row("at its end").contains("FAIL, not reached"));
-    assert!(row("no kink").contains("no kink before its end") && row("no kink").contains(" FAIL "), "{text}");
-    assert!(row("where it stops").contains("FAIL, known") && row("how even it is").contains(" pass "), "{text}");
+    assert!(
+        row("largest to its end").contains("FAILED, not reached") && row("at its end").contains("FAILED, not reached")
+    );
+    assert!(row("no kink").contains("no kink before its end") && row("no kink").contains(" FAILED "), "{text}");
+    assert!(row("where it stops").contains("known failure") && row("how even it is").contains(" passed "), "{text}");
     // At the same penetration the stiffer one is at 1.25 times the time, a fifth of it away from ours.
-    assert!(row("from a stiffer one").contains(" pass ") && row("where that is not").contains(" pass "), "{text}");
+    assert!(row("from a stiffer one").contains(" passed ") && row("where that is not").contains(" passed "), "{text}");
     let table = fs::read_to_string(dir.path().join("out/table.csv")).unwrap();
-    assert!(table.contains("\"pass\",\"80\""), "{table}");
+    assert!(table.contains("\"passed\",\"80\""), "{table}");
 }
 
 #[test]

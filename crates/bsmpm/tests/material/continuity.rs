@@ -25,6 +25,7 @@ fn jump(material: &Material, from: [f64; 3], to: [f64; 3]) -> Option<(Branch, Br
     Some((a, b, largest(&[tau[0] - other[0], tau[1] - other[1], tau[2] - other[2]])))
 }
 
+/// Bisection between trial states in different regions of the yield surface.
 #[test]
 fn stress_is_continuous_where_regions_meet() {
     let mut random = Random::new(20);

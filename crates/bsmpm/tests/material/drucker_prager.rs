@@ -19,6 +19,7 @@ fn invariants(tau: [f64; 3]) -> (f64, f64) {
     (norm / 2_f64.sqrt(), mean)
 }
 
+/// Closed form: the yield function and the flow rule of Drucker and Prager (1952).
 #[test]
 fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
     let mut random = Random::new(80);
@@ -104,6 +105,7 @@ fn sheared_in_the_plane(cone: &Material) -> (f64, f64) {
     ((tau[0] - tau[1]) / 2.0, (tau[0] + tau[1]) / 2.0)
 }
 
+/// Reference: central differences of fourth order.
 #[test]
 fn tangent_is_the_derivative_on_cone_and_tip() {
     let mut random = Random::new(81);

@@ -7,6 +7,7 @@ use bsmpm::material::Branch;
 use bsmpm::tensor::{Symmetric, Tensor};
 use nalgebra::{Rotation3, Vector3};
 
+/// Isotropy: the law commutes with rotations.
 #[test]
 fn rotated_b_gives_rotated_tau() {
     let mut random = Random::new(40);

@@ -52,6 +52,7 @@ fn returns_have_the_friction_of_their_own_rate() {
     assert!(cones > 8_000 && tips > 5_000 && fast > 1_000, "{cones} {tips} {fast}");
 }
 
+/// Reference: a Drucker-Prager cone of constant volume.
 #[test]
 fn without_a_rate_it_is_a_cone() {
     let mut random = Random::new(91);
@@ -70,6 +71,7 @@ fn without_a_rate_it_is_a_cone() {
     }
 }
 
+/// Reference: central differences of fourth order.
 #[test]
 fn tangent_is_the_derivative() {
     let mut random = Random::new(92);

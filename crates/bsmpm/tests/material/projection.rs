@@ -53,6 +53,7 @@ fn region(tau: &[f64; 3], size: f64) -> Branch {
     }
 }
 
+/// Reference: the closest point of the yield surface in the energy norm, by trying all planes.
 #[test]
 fn associated_return_is_the_closest_point() {
     let mut random = Random::new(30);

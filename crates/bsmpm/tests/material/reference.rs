@@ -40,6 +40,7 @@ fn method_section_2_table() {
     }
 }
 
+/// Reference: Tresca, the limit of a friction angle of zero.
 #[test]
 fn friction_to_zero_is_tresca() {
     let mut random = Random::new(1);

@@ -50,6 +50,7 @@ fn returns_lie_on_the_surface_of_their_own_plastic_strain() {
     assert!(seen.len() == 5 && seen.values().all(|&count| count > 1_000), "{seen:?}");
 }
 
+/// Reference: Mohr-Coulomb, bit by bit.
 #[test]
 fn with_one_strength_it_is_mohr_coulomb() {
     let mut random = Random::new(81);

@@ -35,6 +35,7 @@ fn gradient(random: &mut Random) -> Tensor {
     Tensor::from_fn(|_, _| random.signed())
 }
 
+/// Reference: central differences of fourth order.
 #[test]
 fn tangent_is_the_derivative_in_every_region() {
     let mut random = Random::new(50);
@@ -59,6 +60,7 @@ fn tangent_is_the_derivative_in_every_region() {
     assert!(worst.iter().all(|e| *e <= 1e-7), "{worst:?}");
 }
 
+/// Reference: central differences of fourth order.
 #[test]
 fn tangent_holds_for_equal_and_nearly_equal_eigenvalues() {
     let mut random = Random::new(51);

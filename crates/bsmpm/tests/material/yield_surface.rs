@@ -30,6 +30,7 @@ fn sines(material: &Material) -> (f64, f64, f64) {
     (friction.sin(), dilation.sin(), 2.0 * cohesion * friction.cos())
 }
 
+/// Random trial states for six friction angles.
 #[test]
 fn yield_is_satisfied_and_order_kept() {
     let violation = worst(10, 0.3, |material, response| {

@@ -75,6 +75,7 @@ fn wall(cells: usize, method: Stabilisation) -> (f64, Round) {
     (h, scene.load(Load::dead(points, [pressure, 0.0].into(), 1.0)).solved(1.0, 1.0).0)
 }
 
+/// Lamé (1852): displacement of a thick-walled elastic cylinder.
 #[test]
 fn a_thick_cylinder_under_pressure_converges_to_lame() {
     for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ConsistentFBar] {

@@ -58,6 +58,7 @@ fn after_five_periods_of(mut scene: Scene<PlaneStrain, 2>, steps: usize) -> (f64
     (energy(&scene.points) / start, 2.0 * (crossings[crossings.len() - 1] - crossings[0]) / halves)
 }
 
+/// Closed form: the first axial mode of an elastic bar.
 #[test]
 fn without_smoothing_the_bar_keeps_its_energy_and_period() {
     assert_eq!(4.0 * LENGTH / WAVE, PERIOD);
@@ -69,6 +70,7 @@ fn without_smoothing_the_bar_keeps_its_energy_and_period() {
     }
 }
 
+/// Closed form: the first axial mode of an elastic bar, whose energy is constant.
 #[test]
 fn averaging_the_elastic_strain_every_step_takes_energy_as_documented() {
     // Measured: 0.858, 0.549 with 20 and 80 steps a period: the smoothing (T3.5) depends on the step count.
@@ -120,6 +122,7 @@ fn tiny_steps_converge_and_keep_the_energy() {
     }
 }
 
+/// Closed form: the first axial mode of an elastic bar.
 #[test]
 fn with_consistent_mass_the_bar_keeps_more_energy_and_its_period() {
     for (steps, least) in [(20, 0.999), (80, 0.9998)] {

@@ -69,6 +69,7 @@ fn orders(q: usize) -> ([f64; 2], [f64; 2]) {
     (orders, fine)
 }
 
+/// Closed form: stress of an elastic column under its weight at small strain.
 #[test]
 fn small_strain_stress_of_linear_splines_converges_with_order_one() {
     let (orders, fine) = orders(1);
@@ -76,6 +77,7 @@ fn small_strain_stress_of_linear_splines_converges_with_order_one() {
     assert!(fine[0] <= 3.6e-3); // measured 3.47e-3
 }
 
+/// Closed form: stress of an elastic column under its weight at small strain.
 #[test]
 fn small_strain_stress_of_quadratic_splines_converges_with_order_two() {
     // The errors sit in the two end cells, whose volume shrinks with h: the RMS loses half an order against the mean,
@@ -86,6 +88,7 @@ fn small_strain_stress_of_quadratic_splines_converges_with_order_two() {
     assert!(fine[0] <= 1.5e-5); // measured 1.44e-5
 }
 
+/// Closed form: stress of an elastic column under its weight at small strain.
 #[test]
 fn small_strain_stress_of_cubic_splines_is_only_of_first_order_as_documented() {
     let (orders, _) = orders(3);
@@ -99,6 +102,7 @@ fn the_same_column_in_three_dimensions_has_the_same_error() {
     assert!((plane[0] / solid[0] - 1.0).abs() <= 1e-9); // measured 5e-15
 }
 
+/// Closed form: stress of a Hencky column under its weight.
 #[test]
 fn large_strain_stress_stalls_with_linear_splines_ten_times_above_quadratic_ones() {
     // A prototype, shortened by 24 %: q = 1 stalls at 6-12 %, q = 2 has 0.26-0.53 % left (point quadrature).
@@ -114,6 +118,7 @@ fn large_strain_stress_stalls_with_linear_splines_ten_times_above_quadratic_ones
     }
 }
 
+/// Closed form: height of a confined Hencky column under its weight (Lambert W function).
 #[test]
 fn heights_of_the_hencky_column_agree_with_lamberts_function() {
     // Height / l0 as in reference/hencky_column.csv; 20 cells, gravity in 10 steps.
@@ -128,6 +133,7 @@ fn heights_of_the_hencky_column_agree_with_lamberts_function() {
     }
 }
 
+/// Closed form: the reaction is the weight.
 #[test]
 fn the_base_carries_the_columns_weight_at_any_strain_and_any_time_of_the_ramp() {
     let (_, steps) = column::<PlaneStrain, 2>(2, 10, 1.0, 10).solved(1.0, 12.0);

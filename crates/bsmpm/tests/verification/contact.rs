@@ -111,6 +111,7 @@ fn newtons_method_knows_friction() {
     assert!((secants.0 - newton.0).abs() < 1e-5 && newton.2 <= 8, "{secants:?} {newton:?}");
 }
 
+/// Closed form: Coulomb friction on an incline.
 #[test]
 fn a_block_sticks_where_friction_is_larger_than_the_slope() {
     for law in [rough(0.6), Contact { lifts: false, ..rough(0.6) }] {

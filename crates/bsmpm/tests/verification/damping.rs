@@ -93,6 +93,7 @@ fn state(points: &Points<2>) -> (f64, f64, f64) {
     (points.u[0][0], motion.v[0][0], motion.a[0][0])
 }
 
+/// Closed form: amplification matrix of the method of Wood, Bossak and Zienkiewicz (1981).
 #[test]
 fn one_degree_of_freedom_follows_the_amplification_matrix() {
     for scheme in [0.0, 0.5, 0.8, 1.0].map(Scheme::Bossak).into_iter().chain([0.6, 1.0].map(Scheme::Gamma)) {
@@ -128,6 +129,7 @@ fn the_spectral_radius_at_infinite_frequency_is_the_one_that_is_asked_for() {
     stable.for_each(|scheme| assert!(greatest(scheme) <= 1.0 + 1e-9, "{scheme:?} is stable for every step"));
 }
 
+/// Theory: orders of the methods of Newmark (1959) and of Wood, Bossak and Zienkiewicz (1981).
 #[test]
 fn bossak_is_of_second_order_and_newmark_with_gamma_above_a_half_of_first() {
     let error = |scheme: Scheme, steps: f64| {
@@ -189,6 +191,7 @@ fn swing(mut scene: Scene<PlaneStrain, 2>, steps: usize) -> (f64, f64, f64) {
     (last.1 / first.1, last.0 - first.0, 2.0 * (last.0 - first.0) / count)
 }
 
+/// Closed form: eigenvalues of the amplification matrix.
 #[test]
 fn a_mode_of_the_bar_decays_and_slows_down_as_the_theory_says() {
     // The mesh's share of the period is divided out by the run without damping.

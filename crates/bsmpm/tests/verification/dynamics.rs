@@ -30,6 +30,7 @@ fn collision<K: Kinematics<D>, const D: usize>(method: Stabilisation, steps: usi
     (drift, stress)
 }
 
+/// Closed form: the total momentum is constant.
 #[test]
 fn momentum_of_two_colliding_bodies_does_not_drift() {
     for method in METHODS {
@@ -52,6 +53,7 @@ fn settling(regime: Regime) -> Scene<PlaneStrain, 2> {
         .gravity(2.0, 0.0)
 }
 
+/// Reference: the quasi-static solution.
 #[test]
 fn a_dynamic_step_of_huge_length_is_the_static_solution() {
     for method in METHODS {
@@ -127,6 +129,7 @@ fn shear_layer(omega: f64, t: f64) -> f64 {
     (1..200).map(mode).sum()
 }
 
+/// Closed form: modal superposition for an elastic layer on a base that moves as a sine.
 #[test]
 fn a_layer_on_moving_ground_sways_as_the_sum_of_its_modes() {
     let (omega, end) = (2.3, 4.0);

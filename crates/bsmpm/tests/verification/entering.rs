@@ -56,6 +56,7 @@ fn changes(background: Option<Background>) -> [f64; 2] {
     [across.map(change).fold(0.0, f64::max), entering.map(change).fold(0.0, f64::max)]
 }
 
+/// Reference: the same body whose edge coincides with a grid line.
 #[test]
 fn a_body_whose_edge_enters_a_cell_by_next_to_nothing_has_the_same_stress_inside() {
     // Without a background the farthest nodes are dropped below 1e-7 h and are unknowns above: the stress jumps by 0.6

@@ -49,6 +49,7 @@ fn off(all: &Points<2>, column: &Points<2>) -> [f64; 2] {
     most
 }
 
+/// Reference: the one-dimensional column of the free field.
 #[test]
 fn level_ground_moves_as_its_column_everywhere() {
     let mut follows = between(ground((6, 1.0), 1e-3, 0.5), Support::free_field);
@@ -112,6 +113,7 @@ fn off_amplification(h: f64) -> [f64; 3] {
     std::array::from_fn(|k| (sums[k][0] / sums[k][1]).norm() / amplification(BETA, frequencies[k]) - 1.0)
 }
 
+/// Kramer (1996): transfer function of two layers on elastic rock.
 #[test]
 fn layers_amplify_as_waves_in_them_do() {
     let [coarse, fine] = [1.0, 0.5].map(off_amplification);
@@ -142,6 +144,7 @@ fn scattered(wide: usize, side: Side) -> Vec<Vec<Vector<2>>> {
     seen
 }
 
+/// Reference: the same block in ground so wide that no wave returns.
 #[test]
 fn what_a_block_scatters_leaves_through_the_sides() {
     let right = scattered(50, Support::free_field);

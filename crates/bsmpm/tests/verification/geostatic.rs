@@ -66,6 +66,7 @@ fn a_pressure_at_the_start_is_balanced_on_the_drawn_geometry() {
     assert!(found.force <= 1e-8 && settling.rounds == 0 && moved <= 1e-7);
 }
 
+/// Closed form: geostatic stress with the given K0.
 #[test]
 fn earth_pressure_at_rest_gives_back_its_stress_and_is_nearly_balanced() {
     let mut scene = ground::<PlaneStrain, 2>(hencky(1e4, 0.3));
@@ -122,6 +123,7 @@ fn settled<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
     assert_eq!(still, (&before.x, &before.F, &before.u, &before.eps_p));
 }
 
+/// Rankine (1857): active earth pressure.
 #[test]
 fn ground_beyond_yield_settles_at_active_pressure_where_it_is() {
     settled::<PlaneStrain, 2>(Stabilisation::None);
@@ -161,6 +163,7 @@ fn a_stress_whose_strain_has_no_response_is_an_error() {
     assert!(matches!(found, Err(StepError::Material { .. })), "{found:?}");
 }
 
+/// Closed form: settlement integral for a modulus that is linear in depth.
 #[test]
 fn a_modulus_that_grows_with_depth_settles_by_the_integral() {
     // E = e (1 + k z), z the depth: settlement of the surface = int_0^H gamma z / M(z) dz at small strain.

@@ -63,6 +63,7 @@ fn constant(method: Stabilisation, grid: (usize, usize)) -> (f64, usize) {
     (least.sqrt(), count)
 }
 
+/// Chapelle and Bathe (1993): numerical inf-sup test.
 #[test]
 fn over_pairs_of_cells_it_does_not_depend_on_the_size_of_cells() {
     let betas = [4, 8, 16].map(|cells| {

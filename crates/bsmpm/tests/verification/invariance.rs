@@ -37,6 +37,7 @@ fn thrown(mirror: bool, method: Stabilisation) -> Scene<PlaneStrain, 2> {
     scene
 }
 
+/// Invariance: reflection of the axes.
 #[test]
 fn a_mirrored_scene_has_the_mirrored_result() {
     // Extreme N15: <= 1e-10 after 100 elastic steps.
@@ -59,6 +60,7 @@ fn a_mirrored_scene_has_the_mirrored_result() {
     }
 }
 
+/// Invariance: exchange of the axes.
 #[test]
 fn exchanged_axes_give_the_exchanged_result() {
     let scene = |exchanged: bool, method| {
@@ -141,6 +143,7 @@ fn in_units(
     rows(&scene.points).iter().map(|row| row.iter().zip(scales).map(|(value, scale)| value / scale).collect()).collect()
 }
 
+/// Invariance: scaling by powers of two is exact in floating point.
 #[test]
 fn powers_of_two_as_units_change_no_bit() {
     let rubber = |stress: f64| hencky(100.0 * stress, 0.3);

@@ -36,6 +36,7 @@ fn pressed_by(quasi_newton: QuasiNewton, method: Stabilisation) -> (f64, f64, us
     (noise.about_plane, displacement, iterations.iter().sum())
 }
 
+/// Confined block with Poisson's ratio 0.49: oscillation of the stress with and without F-bar.
 #[test]
 fn f_bar_relieves_locking_and_the_oscillation_of_stress() {
     let [none, f_bar, modified] = [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar].map(pressed);

@@ -40,6 +40,7 @@ fn indented(nonlinear: Nonlinear, method: Stabilisation) -> (Plane, Vec<Accepted
         .solved(0.1, 1.0)
 }
 
+/// Theory: quadratic convergence of Newton's method.
 #[test]
 fn the_force_falls_with_its_square() {
     for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ConsistentFBar] {

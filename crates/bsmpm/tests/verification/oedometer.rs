@@ -38,6 +38,7 @@ fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, l: f64) -> f64 
     (0..scene.points.len()).map(of).fold(0.0, f64::max) / vertical.abs()
 }
 
+/// Closed form: confined compression of a Hencky material, M ln(l)/l.
 #[test]
 fn one_step_of_a_prescribed_face_gives_the_exact_stress_in_two_and_three_dimensions() {
     for method in METHODS {
@@ -50,6 +51,7 @@ fn one_step_of_a_prescribed_face_gives_the_exact_stress_in_two_and_three_dimensi
     }
 }
 
+/// Closed form: confined compression of a Hencky material, M ln(l)/l.
 #[test]
 fn one_step_over_many_cells_too() {
     for method in METHODS {
@@ -94,6 +96,7 @@ fn without_mass_the_averages_weigh_with_volume() {
     }
 }
 
+/// Closed form: stress times area.
 #[test]
 fn the_face_feels_the_stress_times_its_area() {
     let (scene, steps) = compressed::<PlaneStrain, 2>(2, 0.8, Stabilisation::None);

@@ -124,6 +124,7 @@ fn a_block_slides_down_a_rigid_plate_as_coulomb_says() {
     assert!((newton.0 - middle).abs() < 1e-6 && newton.1 <= 10);
 }
 
+/// Closed form: Coulomb friction on an incline.
 #[test]
 fn a_block_sticks_where_friction_is_larger_than_the_slope_and_else_does_not() {
     let mut scene = block(4, 0.5, 0.6, Regime::Dynamic);
@@ -195,6 +196,7 @@ fn hertz(h: f64) -> (Vec<f64>, f64) {
     ([0.2, 0.3, 0.4, 0.5, 0.8].map(below).to_vec(), (found.touched as f64 * 0.5 * h - a) / (0.5 * h))
 }
 
+/// Hertz (1882): contact stress of a cylinder on an elastic half-plane.
 #[test]
 fn a_cylinder_on_a_half_plane_is_hertz() {
     let (coarse, fine) = (hertz(0.2), hertz(0.1));

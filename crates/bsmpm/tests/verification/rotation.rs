@@ -37,6 +37,7 @@ fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
     [1.0 - now[0] / start[0], 1.0 - now[1] / start[1], observe::momentum(&scene.points, &Part::Whole, &halo).norm()]
 }
 
+/// Closed form: the angular momentum of a free body is constant.
 #[test]
 fn a_free_block_keeps_its_angular_momentum_with_consistent_mass() {
     for (cells, steps) in [(8, 40), (8, 160)] {

@@ -231,6 +231,7 @@ fn planes<K: Kinematics<D>, const D: usize>(cells: [usize; D]) {
     }
 }
 
+/// Closed form: linear fields, and the stress of a column under its weight.
 #[test]
 fn planes_reproduce_what_is_linear_to_the_surface_and_a_column_has_its_own_weight() {
     planes::<PlaneStrain, 2>([4, 12]);

@@ -110,6 +110,7 @@ fn errors(scene: &Plane, p: &[f64]) -> [f64; 2] {
     [errors.iter().fold(0.0, |most: f64, error| most.max(error.abs())), mean.sqrt()]
 }
 
+/// Closed form: radial flow between two heads, proportional to ln r.
 #[test]
 fn water_flows_through_a_ring_that_cuts_the_cells_as_its_pressures_say() {
     let exact = FRAC_PI_2 * K / (2.0 * LN_2);
@@ -125,6 +126,7 @@ fn water_flows_through_a_ring_that_cuts_the_cells_as_its_pressures_say() {
     }
 }
 
+/// Closed form: radial flow of a given discharge, proportional to ln r.
 #[test]
 fn water_that_is_put_in_at_an_arc_that_cuts_the_cells_raises_the_pressure_as_it_should() {
     // As much as makes the same pressure in the closed form: k p/(gamma_w r ln 4). Bounds: 1.3 times what was measured.

@@ -36,6 +36,7 @@ fn pressed(law: Contact, (from, to): (f64, f64), rows: &[(f64, [f64; 2])]) -> Sc
     scene
 }
 
+/// Closed form: Coulomb friction.
 #[test]
 fn a_dragged_block_sticks_below_mu_n_and_slides_at_mu_n() {
     let rows = [(0.2, [0.0, -1e-3]), (1.0, [2e-3, -1e-3])];

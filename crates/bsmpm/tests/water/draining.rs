@@ -16,6 +16,7 @@ use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 /// Small enough for small strains.
 const LOAD: f64 = 1e-5 * M;
 
+/// Terzaghi (1943): degree of consolidation.
 #[test]
 fn a_column_settles_alike_wherever_its_drained_surface_cuts_the_cells() {
     // Terzaghi (1923): U at the time factor 0.2.
@@ -36,6 +37,7 @@ fn height(points: &Points<2>) -> f64 {
     places.iter().map(|x| x[1]).sum::<f64>() / places.len() as f64
 }
 
+/// Independent solution by the method of lines: consolidation at large strain.
 #[test]
 fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
     // Reference by lines (200 and 400 cells, extrapolated), Hencky's law, 0.5 M on top: settlement at these times.
@@ -139,6 +141,7 @@ impl Disc {
     }
 }
 
+/// De Leeuw (1964): consolidation of a cylinder.
 #[test]
 fn a_disc_that_is_pressed_on_its_drained_rim_follows_its_closed_form() {
     let disc = Disc::new();
@@ -166,6 +169,7 @@ fn a_disc_that_is_pressed_on_its_drained_rim_follows_its_closed_form() {
     assert!(errors.iter().zip([0.0088, 0.0071, 0.0059]).all(|(error, bound)| *error <= bound));
 }
 
+/// Closed form: radial flow between two heads, proportional to ln r.
 #[test]
 fn water_flows_through_a_ring_between_its_drained_arcs() {
     // As in `verification::seepage`, through a skeleton that gives way, once it is steady.
@@ -250,6 +254,7 @@ fn under_strip(h: f64, [beyond, cut]: [f64; 2]) -> (Plane, usize) {
     (scene, iterations)
 }
 
+/// Closed form: strip load on an incompressible elastic layer.
 #[test]
 fn pressures_under_a_strip_load_that_nothing_drains_are_smooth_and_those_of_the_layer() {
     // In the half plane it would be q alpha/pi, alpha the angle that the strip is seen by: 0.5 at its depth of half its

@@ -16,6 +16,7 @@ const TABLE: [(f64, [f64; 5]); 3] = [
 ];
 const TIMES: [f64; 5] = [0.5, 1.0, 2.0, 4.0, 10.0];
 
+/// Closed form: telegraph equation of a saturated column.
 #[test]
 fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
     // A step is accepted once the water's balance is off by 1e-13 of the volume: 1e-6 of the energy under a tenth of

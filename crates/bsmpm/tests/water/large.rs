@@ -73,6 +73,7 @@ fn compare(name: &str, once: f64, found: &[[f64; 2]], expected: &[[f64; 2]]) -> 
     worst
 }
 
+/// Independent solution by the method of lines: consolidation at large strain.
 #[test]
 fn a_load_of_half_the_stiffness_settles_as_the_solution_by_lines() {
     let load = 0.5 * M;

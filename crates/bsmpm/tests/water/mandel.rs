@@ -53,6 +53,7 @@ fn block(cells: usize, nu: f64) -> Plane {
     scene
 }
 
+/// Mandel (1953), Cheng and Detournay (1988): consolidation of a block between two plates.
 #[test]
 fn the_pressure_in_the_middle_rises_before_it_falls_and_the_plate_sinks() {
     let cells = 16;

@@ -126,6 +126,7 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     (errors, [yielding.count(), points.len()])
 }
 
+/// Reference: finite differences of both balances.
 #[test]
 fn the_product_is_the_derivative_of_both_balances() {
     let loam = Retention::van_genuchten(0.3, 1.6, 0.1);
@@ -192,6 +193,7 @@ fn steps(scene: &mut Plane, times: &[f64]) -> Result<(f64, Vec<StepReport>, usiz
     Ok((largest_displacement(&scene.points, &Part::Whole, &halo), reports, products))
 }
 
+/// Theory: quadratic convergence of Newton's method.
 #[test]
 fn forces_and_water_fall_with_their_squares() {
     for method in [Stabilisation::None, Stabilisation::ConsistentFBar] {

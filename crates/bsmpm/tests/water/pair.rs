@@ -118,6 +118,7 @@ fn constants(mut scene: Plane) -> [f64; 2] {
     })
 }
 
+/// Chapelle and Bathe (1993): numerical inf-sup test of displacement and pressure.
 #[test]
 fn the_pair_is_stable_on_any_grid_whole_and_cut() {
     for cells in [4, 8, 12] {

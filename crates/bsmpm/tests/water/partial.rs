@@ -104,6 +104,7 @@ fn off(points: &Points<2>, q: f64) -> f64 {
     order.iter().zip(&exact).map(|(&p, psi)| (found[p] / WEIGHT - psi).abs()).fold(0.0, f64::max)
 }
 
+/// Richards (1931): steady infiltration and evaporation of a column.
 #[test]
 fn steady_columns_follow_the_equation_of_richards() {
     // Rain of half of what the saturated ground lets through, evaporation, rest; bounds: 1.3 times what was measured.
@@ -166,6 +167,7 @@ fn the_books_of_rain_close_with_what_suction_stores() {
     assert!((lost[1] / lost[0]).abs() < 0.6, "of first order in the step: {lost:?}");
 }
 
+/// Closed form: in the end the ground takes rain at the rate of its saturated permeability.
 #[test]
 fn rain_that_the_ground_does_not_take_runs_off() {
     let mut scene = column(10, 3.0 * K, true);
@@ -207,6 +209,7 @@ fn a_front_of_rain_goes_down_without_oscillations() {
     assert!(worst[0] < 0.1 && worst[1] < 3.0e-3);
 }
 
+/// Bishop (1959): effective stress in unsaturated soil.
 #[test]
 fn suction_presses_the_skeleton_as_bishop_says() {
     // A column free on two sides, without weight and without flow: E ln J = 2 J chi p, and the water that it holds
@@ -247,6 +250,7 @@ fn conducted(soil: &Retention, psi: f64) -> f64 {
     (0..parts).map(k).sum::<f64>() * step + psi.max(0.0)
 }
 
+/// Charny (1951): the discharge of a rectangular dam is that of Dupuit.
 #[test]
 fn a_dam_lets_through_what_dupuit_says() {
     // m

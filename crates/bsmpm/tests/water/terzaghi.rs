@@ -22,6 +22,7 @@ fn degree(points: &bsmpm::points::Points<2>) -> f64 {
     settlement(points) * M / LOAD
 }
 
+/// Terzaghi (1943): degree of consolidation and pore pressure.
 #[test]
 fn settlement_and_pressures_follow_the_closed_form() {
     let mut times = geometric(1e-5, 1.0, 900);
@@ -90,6 +91,7 @@ fn consolidation_is_of_second_order_in_time() {
     assert!(orders.iter().all(|order| *order > 1.8 && *order < 2.3));
 }
 
+/// Terzaghi (1943): degree of consolidation.
 #[test]
 fn a_drained_surface_may_cut_the_cells() {
     let of = |cut: f64| {
