@@ -382,7 +382,9 @@ fn gravity(record: &Record, regime: Option<Regime>, end: Option<f64>, report: &m
     let gravity = Gravity { acceleration: table.vector("acceleration")?, ramp: table.number("ramp")? };
     let Gravity { acceleration, ramp } = gravity;
     let dims = record.word::<Geometry>("geometry")?.dims();
-    if regime == Some(Regime::QuasiStatic) && !gravity.is_straight(dims) && acceleration[dims - 1] < 0.0 {
+    let is_pseudo_static =
+        regime == Some(Regime::QuasiStatic) && !gravity.is_straight(dims) && acceleration[dims - 1] < 0.0;
+    if is_pseudo_static {
         let coefficients = acceleration[..dims - 1].iter().map(|part| format!("{:.4}", -part / acceleration[dims - 1]));
         let written = coefficients.collect::<Vec<_>>().join(", ");
         report.note(
@@ -391,7 +393,11 @@ fn gravity(record: &Record, regime: Option<Regime>, end: Option<f64>, report: &m
             "pseudo-static analysis: pore pressures and initial stresses follow from the vertical part alone",
         );
     }
-    let size = acceleration[0].hypot(acceleration[1]).hypot(acceleration[2]);
+    // The horizontal part of a pseudo-static load is no weight.
+    let size = match is_pseudo_static {
+        true => -acceleration[dims - 1],
+        false => acceleration[0].hypot(acceleration[1]).hypot(acceleration[2]),
+    };
     let off = (size / STANDARD_GRAVITY - 1.0).abs();
     if off <= 0.01 && off > NEARLY_STANDARD {
         report.warn(format!(

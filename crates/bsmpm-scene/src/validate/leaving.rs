@@ -1,7 +1,7 @@
 //! Warns of bodies that leave the grid through a free face.
 
 use super::physics;
-use crate::case::{Body, Case, Face, Geometry, Support};
+use crate::case::{Body, Case, Face, Geometry, Rigid, RigidShape, RigidSolid, Support};
 use crate::record::Record;
 use crate::region::Region;
 use crate::report::Report;
@@ -36,7 +36,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let is_open = |face: &Face| {
         let is_axis = case.geometry == Geometry::Axisymmetric && face.axis == 0;
         let is_free = case.boundary[face.axis][usize::from(face.upper)] == Support::Free;
-        !is_axis && is_free && !physics::holds_at_rest(case, face.axis, None)
+        !is_axis && is_free && !has_terrain_above(case, *face) && !physics::holds_at_rest(case, face.axis, None)
     };
     let open: Vec<Face> = faces.filter(is_open).collect();
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
@@ -58,6 +58,13 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
             ));
         }
     }
+}
+
+/// Whether a face is the bottom of the grid and rigid terrain lies above it, on which bodies come to rest.
+fn has_terrain_above(case: &Case, face: Face) -> bool {
+    let is_bottom = face.axis == case.grid.dims() - 1 && !face.upper;
+    let is_terrain = |rigid: &Rigid| matches!(rigid.shape, RigidShape::InSpace(RigidSolid::Terrain(_)));
+    is_bottom && case.rigid.iter().any(is_terrain)
 }
 
 impl<'a> FreeMotion<'a> {

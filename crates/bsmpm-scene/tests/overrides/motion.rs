@@ -103,3 +103,30 @@ fn a_body_spins_about_its_place() {
     let message = format!("{:?}", set(STATIC, &["body.0.spin={ rate = 2.0, about = [0, 0] }"]).expect_err("at rest"));
     assert!(message.contains("E0218"), "{message}");
 }
+
+/// Rigid terrain lies between the body and the free bottom of the grid.
+#[test]
+fn a_body_above_rigid_terrain_does_not_leave_through_the_bottom() {
+    let body = "geometry = \"3d\"\nanalysis = { type = \"dynamic\", end = 1.0, dt = 0.01 }\n\
+                gravity = { acceleration = [0.0, 0.0, -9.81] }\n\
+                grid = { lower = [0, 0, 0], upper = [4, 4, 4], cell = 0.5 }\n\
+                [material.m]\nmodel = \"elastic\"\nyoung = 1e7\npoisson = 0.3\ndensity = 1000\n\
+                [[body]]\nmaterial = \"m\"\npoints_per_cell = 2\nbox = { lower = [1, 1, 0.4], upper = [2, 2, 1.4] }\n";
+    let terrain = "[[rigid]]\nname = \"ground\"\n\
+                   terrain = { top = [[0, 0, 0.4], [4, 0, 0.4], [0, 4, 0.4], [4, 4, 0.4]] }\n";
+    let leaves = |case: &str| valid(case, &[]).warnings.iter().any(|warning| warning.starts_with("W0230"));
+    assert!(leaves(body));
+    assert!(!leaves(&format!("{body}{terrain}")));
+}
+
+/// A horizontal part in a quasi-static analysis is a load and no weight.
+#[test]
+fn a_pseudo_static_load_does_not_change_the_weight() {
+    let warned = |gravity: &str| {
+        let warnings = valid(STATIC, &[&format!("gravity.acceleration={gravity}")]).warnings;
+        warnings.iter().any(|warning| warning.starts_with("W0205"))
+    };
+    assert!(warned("[0, -9.75]"));
+    assert!(warned("[1.2, -9.75]"));
+    assert!(!warned("[1.2, -9.81]"));
+}
