@@ -1,9 +1,9 @@
 //! Walks through the manual as a reader does: writes every file, runs every command, and compares exit codes, printed
-//! lines and pictures with the text. `scripts/book --check` and `--full` start it with the programs on the PATH.
+//! lines and pictures with the text. `scripts/book --check` and `--full` start this walk with the programs on the PATH.
 //!
 //! Usage: `walk [--full] [--only CHAPTER]`
 //!
-//! Without `--full`, the cases have the coarse values of their fences, pictures need only exist, and outputs that are
+//! Without `--full`, cases have the coarse values of their fences, pictures need only exist, and outputs that are
 //! marked `full` are not compared. With `--full`, cases run as printed, and the pictures of the manual are renewed.
 //! `--only` walks through one chapter, for example `tutorials/slope`.
 

@@ -1,6 +1,6 @@
-//! The manual of bsmpm. Its chapters are the Markdown files in this folder and its sub-folders, in the order of
-//! `SUMMARY.md`. `scripts/book` builds it with mdBook and runs its commands; this library reads it for the tests, for
-//! the walk through its commands (`examples/walk.rs`) and for the build (`main.rs`).
+//! The manual of bsmpm. Its chapters are the Markdown files in this folder, in the order of `SUMMARY.md`.
+//! `scripts/book` builds the manual with mdBook and runs its commands. This library reads the manual for the tests, for
+//! `examples/walk.rs` and for the build (`main.rs`).
 //!
 //! # Fenced blocks
 //!
@@ -16,7 +16,7 @@
 //! | `sh,exit=N` | Commands that end with code N. |
 //! | `sh,not-run` | Commands that cannot run in a check. They are counted and listed. |
 //! | `text,output` | Lines that the commands before it print, among others; `...` matches anything within a line. |
-//! | `text,output,full` | The same, compared only in a full run, because a coarse run prints other numbers. |
+//! | `text,output,full` | As `text,output`, but compared in a full run only: a coarse run prints other numbers. |
 //! | `rust` | Compiled and run as a doctest of this crate. |
 //!
 //! Each tutorial begins in an empty directory with the repository's `cases/`. All
@@ -314,6 +314,33 @@ pub fn pictures(text: &str) -> Vec<Picture> {
     found
 }
 
+/// The text with the caption of each picture below it, as the built manual shows it: a picture that is a paragraph is followed
+/// by its caption in a paragraph of the class `caption`.
+pub fn captioned(text: &str) -> String {
+    let mut captioned = String::new();
+    let mut is_code = false;
+    for paragraph in text.split("\n\n") {
+        if !captioned.is_empty() {
+            captioned.push_str("\n\n");
+        }
+        captioned.push_str(paragraph);
+        if !is_code && let Some(caption) = sole_caption(paragraph) {
+            captioned.push_str(&format!("\n\n<div class=\"caption\">\n\n{caption}\n\n</div>\n"));
+        }
+        let fences = paragraph.lines().filter(|line| line.trim_start().starts_with("```")).count();
+        is_code ^= fences % 2 == 1;
+    }
+    captioned
+}
+
+/// The caption of a paragraph that is one picture, with or without a comment.
+fn sole_caption(paragraph: &str) -> Option<&str> {
+    let (caption, rest) = paragraph.trim().strip_prefix("![")?.split_once("](")?;
+    let (_, after) = rest.split_once(')')?;
+    let is_comment = after.trim().is_empty() || after.trim().starts_with("<!--") && after.trim().ends_with("-->");
+    is_comment.then_some(caption)
+}
+
 /// Numbers of the equations of a chapter, as its `\tag{...}` give them.
 pub fn tags(text: &str) -> Vec<String> {
     let tags = text.split("\\tag{").skip(1);
@@ -389,6 +416,13 @@ mod tests {
         let picture =
             |line, target: &str, drawn: &str| Picture { line, target: target.to_owned(), drawn: drawn.to_owned() };
         assert_eq!(pictures(text), [picture(4, "../b.png", "x.out/b.png"), picture(5, "c.png", "c")]);
+    }
+
+    #[test]
+    fn captions_follow_pictures_that_are_paragraphs() {
+        let text = "![a\nb](x.png)<!-- y.png -->\n\nsee ![c](z.png)\n\n```text\n\n![d](e.png)\n\n```\n";
+        let below = "\n\n<div class=\"caption\">\n\na\nb\n\n</div>\n";
+        assert_eq!(captioned(text), text.replacen("y.png -->", &format!("y.png -->{below}"), 1));
     }
 
     #[test]

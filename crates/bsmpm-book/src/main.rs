@@ -13,7 +13,7 @@
 //! A link to a file that does not exist is reported and kept.
 #![forbid(unsafe_code)]
 
-use bsmpm_book::{Chapter, Link, anchor, chapters, links, normalised, prose, relinked, repository, source};
+use bsmpm_book::{Chapter, Link, anchor, captioned, chapters, links, normalised, prose, relinked, repository, source};
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -138,7 +138,7 @@ impl Manual {
                 }
                 _ => link.target.clone(),
             });
-            write(&destination.join(&chapter.file), &text)?;
+            write(&destination.join(&chapter.file), &captioned(&text))?;
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! What of the manual can be judged without the solver: cases, fences, links, equations, and generated pages.
+//! Tests of the manual that need no solver: cases, fenced blocks, links, equation numbers and generated pages.
 
 use bsmpm_book::{
     Block, Chapter, Link, anchor, blocks, chapters, cited_equations, links, normalised, pictures, prose, repository,

@@ -1,5 +1,5 @@
-//! The page of the closed-form tests: every test of the physics as a statement, with its source and its file.
-//! `BSMPM_RENEW=1 cargo test -p bsmpm-book --test tests_page` writes it again.
+//! Tests that the manual's page of closed-form tests (`verification/tests.md`) lists every such test with its source
+//! and file. `BSMPM_RENEW=1 cargo test -p bsmpm-book --test tests_page` writes the page again.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Runs a case on one rank without MPI and PETSc.
+//! Runs a case on one rank, without MPI and PETSc, for the fuzz targets.
 
 use crate::solver::Skyline;
 use bsmpm::background::Resisted;

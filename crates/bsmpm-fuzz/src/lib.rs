@@ -1,7 +1,8 @@
-//! Fuzz targets: arbitrary input must not cause a panic or a number that is not finite.
+//! Fuzz targets: functions that pass arbitrary bytes to parts of the program. No input may cause a panic or a number
+//! that is not finite.
 //!
-//! A target is a function of bytes. `tests/replay/main.rs` runs all targets on the committed corpora; `scripts/fuzz`
-//! runs them under libFuzzer.
+//! `tests/replay/main.rs` runs all targets on stored inputs (corpora); `scripts/fuzz` lets libFuzzer search for new
+//! inputs.
 #![forbid(unsafe_code)]
 // As in `bsmpm`: N, dN and F are what the paper calls so.
 #![allow(non_snake_case)]

@@ -1,4 +1,4 @@
-//! Runs a target: `bsmpm-fuzz TARGET FILE...`. `scripts/fuzz` builds it with libFuzzer.
+//! Runs one fuzz target on files: `bsmpm-fuzz TARGET FILE...`. `scripts/fuzz` builds this program with libFuzzer.
 #![cfg_attr(fuzzing, no_main)]
 
 #[cfg(fuzzing)]

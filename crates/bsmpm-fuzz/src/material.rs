@@ -1,4 +1,5 @@
-//! Fuzzes return mappings (T4.1) to (T4.3): the stress must lie within the yield surface.
+//! Fuzz target of the constitutive laws: the stress after the return mapping, (T4.1) to (T4.3), must lie within the
+//! yield surface.
 
 use crate::draw;
 use arbitrary::{Result, Unstructured};

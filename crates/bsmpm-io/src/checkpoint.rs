@@ -1,5 +1,5 @@
-//! Checkpoints: an HDF5 file with the arrays, and a record ([`CheckpointRecord`]) with its size and hash. A checkpoint
-//! is valid after [`Store::commit`].
+//! Checkpoints: an HDF5 file with arrays, and a record ([`CheckpointRecord`]) with its size and hash. A checkpoint is
+//! valid after [`Store::commit`].
 
 mod find;
 mod record;

@@ -1,4 +1,4 @@
-//! The output directory of a run. Only files named in its `run.json` are ever deleted.
+//! The output directory of a run. The program deletes only files that `run.json` in this directory names.
 
 use std::fs::{self, Metadata};
 use std::io::{self, ErrorKind};

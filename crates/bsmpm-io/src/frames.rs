@@ -1,4 +1,4 @@
-//! Writes frames (`frames/step_*.vtu`) and their list (`frames.pvd`), on a separate thread.
+//! Writes the frames of a run (`frames/step_*.vtu`) and their list (`frames.pvd`) on a separate thread.
 
 use std::fs;
 use std::io::Write;

@@ -1,4 +1,4 @@
-//! `.lock`: reserves an output directory for one process. The lock of a dead process is replaced.
+//! The file `.lock`, which reserves an output directory for one process. The lock of a dead process is replaced.
 
 mod holder;
 

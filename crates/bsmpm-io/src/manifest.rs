@@ -1,4 +1,4 @@
-//! `run.json`, the manifest: case, program, course and output of a run.
+//! The manifest `run.json`: case, program version, progress and output files of a run.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,4 +1,4 @@
-//! CSV tables with one row per step. The second line has the units.
+//! CSV tables with one row per step of a run. The second line has units.
 
 use std::fs::{self, File};
 use std::io::{Read, Seek, SeekFrom, Write};

@@ -1,4 +1,4 @@
-//! A message is a text that begins with its code: `W0206: gravity ...`.
+//! Reads the code of a message. Each message text begins with its code: `W0206: gravity ...`.
 
 /// Characters of a code and of the colon and the blank behind it.
 const LENGTH: usize = "E0001".len();

@@ -1,4 +1,4 @@
-//! Tests that the catalogue is complete, and that messages follow their pattern.
+//! Tests that each message has a catalogue page, and follows the pattern of messages.
 
 use bsmpm_messages::{Kind, Page, code_of, pages, without_code};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,4 +1,4 @@
-//! Prints hashes of the arrays and the other state of a checkpoint: `arrays FILE`.
+//! Prints hashes of a checkpoint's arrays and other state, to compare runs: `arrays FILE`.
 
 use bsmpm::points::Points;
 use bsmpm_par::checkpoint::{CheckpointState, Opened, Refusal, Wanted, find};

@@ -1,4 +1,5 @@
-//! Checkpoints on all ranks: arrays in slices of rows, and the common [`CheckpointState`].
+//! Writes and reads checkpoints on all ranks. Each rank writes its rows of the arrays; all ranks share one
+//! [`CheckpointState`].
 
 mod read;
 mod refusal;

@@ -1,4 +1,4 @@
-//! Injects faults for tests by `BSMPM_FAULT`:
+//! Injects faults into a run, for tests. The environment variable `BSMPM_FAULT` selects one:
 //!
 //! - `panic:rank=R,step=N` panics on rank R in step N;
 //! - `kill:phase=P,step=N` kills the rank that writes the checkpoint of step N, in phase P;

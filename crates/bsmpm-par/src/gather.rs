@@ -1,4 +1,4 @@
-//! Gathers the material points of a frame on rank 0, in the order of their ids.
+//! Gathers the material points of all ranks on rank 0, in the order of their ids, for a frame.
 
 use bsmpm::material::{Material, Variable};
 use bsmpm::observe::invariants;

@@ -1,4 +1,5 @@
-//! Computes indicators of the reliability of a run, at its end: (T10.4), (T10.5), (T10.9) and (T10.13) to (T10.16).
+//! Computes indicators at the end of a run. They show whether the results are reliable. The equations are (T10.4),
+//! (T10.5), (T10.9) and (T10.13) to (T10.16) of the theory manual.
 
 mod force_noise;
 mod limits;

@@ -1,4 +1,4 @@
-//! Limit loads at the end of a limit load analysis.
+//! Determines limit loads from the history of a limit load analysis.
 
 use bsmpm_io::manifest::ManifestLimitLoad;
 use bsmpm_io::table::Columns;

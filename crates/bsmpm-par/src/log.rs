@@ -1,4 +1,4 @@
-//! The log of rank 0 on stderr, at a terminal, in a batch job or as JSON.
+//! Writes the log of a run on rank 0 to stderr, for a terminal, a batch job or as JSON.
 
 use crate::cli::{Arguments, LogFormat, ProgressForm};
 use crate::launch;

@@ -1,4 +1,4 @@
-//! Data of the operating system about this process (Linux only).
+//! Processor time, memory and BLAS library of this process (Linux only).
 
 use std::fs;
 

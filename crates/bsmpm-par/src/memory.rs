@@ -1,4 +1,4 @@
-//! Compares the memory estimate of a case with `--max-memory` and the host.
+//! Compares the estimated memory of a case with `--max-memory` and the host's memory.
 
 use crate::cli::Arguments;
 use crate::launch::{complain, say};

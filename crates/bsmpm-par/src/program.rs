@@ -1,4 +1,4 @@
-//! Prepares a run. Nothing is written before all checks have passed.
+//! Prepares a run from the command line. Nothing is written before all checks have passed.
 
 mod begin;
 

@@ -1,4 +1,4 @@
-//! Finds the terminal of this process or of `mpirun` (Linux only).
+//! Finds whether stderr of this process or `mpirun` is a terminal, for progress lines (Linux only).
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{IsTerminal, stderr};

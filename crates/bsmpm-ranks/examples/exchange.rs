@@ -1,4 +1,4 @@
-//! Exchanges and checks messages of many lengths between all ranks: `exchange BLOCK`, with blocks of BLOCK bytes.
+//! Tests messages of many lengths between all ranks: `exchange BLOCK`, with blocks of BLOCK bytes.
 
 use bsmpm_ranks::traffic::Traffic;
 use bsmpm_ranks::{launch, migrate};

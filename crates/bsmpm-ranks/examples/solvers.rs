@@ -1,4 +1,4 @@
-//! Measures linear solvers on the stiffness of an elastic square:
+//! Measures linear solvers on the stiffness of an elastic square (NU: Poisson's ratio, CELLS: cells per side):
 //! `mpirun -n 2 solvers direct|mumps|redundant|gamg NU CELLS [PETSc options]`
 
 use bsmpm::grid::{Grid, KnotVector};

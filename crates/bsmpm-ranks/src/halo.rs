@@ -1,5 +1,5 @@
-//! Exchanges nodal contributions between ranks with common nodes. They are added by columns of cells, so that sums have
-//! the same bits on any number of slabs.
+//! Adds the nodal contributions of all ranks at nodes that ranks share. They are added by columns of cells, so nodal
+//! sums are bitwise identical on any number of slabs.
 
 use crate::signals::{Requests, WIDTH};
 use crate::slab::{NodeBox, SharedLayer, Slabs, common};

@@ -1,4 +1,5 @@
-//! Load of a rank (T12.1). It is counted and not timed, so that a run can be repeated.
+//! Estimates the computational load of a rank (T12.1). Points and nodes are counted, not times measured, so a run can
+//! be repeated exactly.
 
 use crate::slab::Slabs;
 use bsmpm::grid::Grid;

@@ -1,4 +1,4 @@
-//! Moves material points and nodal values between ranks, by a [`plan`](crate::plan).
+//! Moves material points and nodal values between ranks, as a [`plan`](crate::plan) prescribes.
 
 use crate::plan::{NodePlan, PointPlan};
 use crate::slab::{NodeBox, Slabs};

@@ -1,7 +1,7 @@
-//! Handles signals on all ranks.
+//! Handles signals to any rank, on all ranks.
 //!
-//! USR1, TERM and INT stop the run at the last converged state; a second TERM or INT ends it at once. USR2 writes a
-//! frame and a checkpoint.
+//! SIGUSR1, SIGTERM and SIGINT stop the run at the last converged state. A second SIGTERM or SIGINT ends the run at
+//! once. SIGUSR2 writes a frame and a checkpoint.
 
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
 use signal_hook::flag;

@@ -1,4 +1,4 @@
-//! The state of a run on its ranks: steps, migration and load balance.
+//! The state of a run on all ranks, with steps, migration and load balance.
 
 use crate::halo::MpiHalo;
 use crate::linear::{Choice, Solvers, Tallies};

@@ -1,5 +1,5 @@
 //! The stiffness matrix of a rank as node stencils: each node couples with the (2q+1)^D nodes around it (degree q, D
-//! axes), or with more by F-bar averages.
+//! axes). F-bar averages couple more nodes.
 
 mod places;
 

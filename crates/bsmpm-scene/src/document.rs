@@ -1,4 +1,4 @@
-//! The parsed case file: values with their positions in the text.
+//! The parsed text of a case: values with their positions, for messages.
 
 use crate::error::Origin;
 use crate::report::{Report, shortened};

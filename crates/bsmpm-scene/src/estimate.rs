@@ -1,4 +1,4 @@
-//! Estimates the size and memory of a case, with coefficients fitted to runs.
+//! Estimates size and memory of a case before its run, with coefficients fitted to earlier runs.
 
 use crate::case::{Body, Case, Linear, Nonlinear};
 use crate::grid::GridSpec;

@@ -1,4 +1,4 @@
-//! The grid of a case. Its cells have a positive length, unlike some knot spans of `bsmpm`.
+//! The grid of a case. A repeated breakpoint adds no cell here; in `bsmpm` it adds a knot span of zero length.
 
 use bsmpm::tensor::Vector;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Builds the model, material points and step sequence of a case.
+//! Converts a case to types of `bsmpm`: model, material points and step sequence.
 
 use crate::region::Region;
 use crate::seed::seed_bodies;

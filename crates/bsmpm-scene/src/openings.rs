@@ -1,6 +1,6 @@
-//! Finds holes and notches of bodies, for presets and the indicator `cells-across-opening`.
+//! Finds openings (holes and notches) of bodies, for presets and for the indicator `cells-across-opening`.
 //!
-//! A ray starts at the surface of a body along the outward normal. It crosses an opening if it meets an opposite wall
+//! A ray starts at the surface of a body, along the outward normal. It crosses an opening if it meets an opposite wall
 //! of the same body. Walls with a slope of 60 degrees or less and filled openings do not count.
 
 mod plane;

@@ -1,4 +1,4 @@
-//! The largest number of ranks for a case, and the division of the grid into parts.
+//! Computes the largest number of ranks that a case can use, and how these ranks divide the grid.
 
 use crate::case::Case;
 use crate::words::Support;

@@ -1,5 +1,5 @@
-//! Presets: `accuracy` fills in missing values of cells (T11.1), steps (T11.2) and tolerances before the comparison
-//! with the schema.
+//! Presets: `accuracy` chooses missing values of cells (T11.1), steps (T11.2) and tolerances. The completed case is
+//! then compared with the schema.
 
 mod axis;
 mod cells;

@@ -29,8 +29,8 @@ pub fn reference() -> String {
     page.line("## Rows from a file\n");
     page.paragraph(
         "Instead of rows, `{ file = \"record.csv\" }` names a text file in the folder of the case. Each line is a row. \
-         Commas, semicolons, tabs or spaces separate its values, and `#` begins a comment. A heading may give units, for \
-         example `t [s], ux [mm]`. With `along = \"x\"` (or \"y\", in 3-D \"z\") the file has two columns, a time and a value \
+         Commas, semicolons, tabs or spaces separate its values, and `#` begins a comment. A heading may give \
+         units as `t [s], ux [mm]`, `t (s), ux (mm)` or `t / s, ux / mm`. A column without a unit in its heading is in SI units. With `along = \"x\"` (or \"y\", in 3-D \"z\") the file has two columns, a time and a value \
          along this axis; the other components are zero. The rows become part of the case: `run.json` stores them, and \
          a restart does not need the file. `--set` and the parameters of a sweep accept rows only.",
     );
@@ -110,7 +110,9 @@ impl Page {
         if !matches!(key.kind, Kind::Open) {
             let _ = write!(text, " {}.", capitalised(&takes(key)));
         }
-        let _ = write!(text, " {}.", presence(key.presence));
+        let chosen = key.presence == Presence::Required && key.doc.contains("`accuracy`");
+        let _ =
+            write!(text, " {}{}.", presence(key.presence), if chosen { ", unless `accuracy` chooses it" } else { "" });
         if let Some(value) = key.example_value() {
             let _ = write!(text, " Example: `{} = {value}`.", key.name);
         }
@@ -216,7 +218,9 @@ fn quoted(table: &Table) -> String {
 fn choice(group: &Group) -> String {
     let keys: Vec<String> = group.keys.iter().map(|key| format!("`{key}`")).collect();
     let how_many = if group.required { "Give one" } else { "Give at most one" };
-    format!("{how_many} of {}.", keys.join(", ")).replace("`from`", "`from` with `to`")
+    let is_chosen = group.required && (group.keys.contains(&"steps") || group.keys.contains(&"cell"));
+    let unless = if is_chosen { ", unless `accuracy` chooses it" } else { "" };
+    format!("{how_many} of {}{unless}.", keys.join(", ")).replace("`from`", "`from` with `to`")
 }
 
 /// Whether a group is that of the second end of a segment, whose first end has the same group.

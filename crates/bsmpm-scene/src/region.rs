@@ -1,4 +1,4 @@
-//! The region that a body fills. In a plane it is bounded by straight edges and arcs.
+//! The region that a body fills at the start. In two dimensions it is bounded by straight edges and arcs.
 
 mod cells;
 mod edge;

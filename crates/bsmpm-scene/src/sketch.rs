@@ -1,4 +1,4 @@
-//! Extracts basic data from the text of a possibly invalid case.
+//! Extracts basic data from the text of a case that may be invalid in this version.
 
 use crate::case::Support;
 use crate::record::{self, Record};

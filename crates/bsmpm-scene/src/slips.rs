@@ -1,4 +1,4 @@
-//! Reports slips, such as misspelt keys, and corrects them to avoid consequential errors.
+//! Reports slips in a case, such as misspelt keys, and corrects them, so that one slip causes one error.
 
 use crate::document::{DocumentEntry, DocumentTable, Node, Value};
 use crate::key_path::join;

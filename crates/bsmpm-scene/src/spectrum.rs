@@ -1,4 +1,5 @@
-//! Finds the frequency below which 95 % of the energy of an input lies.
+//! Finds the frequency below which 95 % of the energy of a prescribed motion or load lies, because cells must resolve
+//! it.
 //!
 //! The energy of a plane wave is proportional to the square of its velocity. The energies of the Fourier components of
 //! the velocity are summed from the lowest frequency upwards, without the mean.

@@ -1,4 +1,4 @@
-//! Converts footings, rigid bodies, loads and drains to types of `bsmpm`.
+//! Converts footings, rigid bodies, loads and drains of a case to types of `bsmpm`.
 
 mod strips;
 pub(crate) mod transition;

@@ -1,4 +1,4 @@
-//! Checks the rules between keys, and makes the valid case.
+//! Checks the rules between keys of a case, and makes the valid [`Case`](crate::Case).
 
 mod approach;
 mod axisymmetric;

@@ -1,4 +1,4 @@
-//! Words that keys accept, such as `"plane-strain"`, as enums with descriptions.
+//! Words that keys of a case accept, such as `"plane-strain"`, as Rust enums with descriptions.
 
 #[macro_use]
 mod define;

@@ -1,4 +1,4 @@
-//! Tests detection and refinement of holes, notches and re-entrant corners.
+//! Tests that presets find holes, notches and re-entrant corners, and refine cells there.
 
 use bsmpm_scene::{Case, NarrowestOpening};
 

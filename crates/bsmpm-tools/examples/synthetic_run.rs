@@ -1,4 +1,4 @@
-//! Writes synthetic runs for `bsmpm plot`: `cargo run --example synthetic_run DIRECTORY`.
+//! Writes output directories without a solver, to test `bsmpm plot`: `cargo run --example synthetic_run DIRECTORY`.
 
 #[path = "../tests/plot/collapse.rs"]
 mod collapse;

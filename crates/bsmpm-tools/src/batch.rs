@@ -1,4 +1,4 @@
-//! Makes many runs of one case with different settings, in parallel. Complete runs are reused.
+//! Runs one case with different settings, several runs at a time. Complete runs are reused.
 
 use std::fs;
 use std::path::{Path, PathBuf};

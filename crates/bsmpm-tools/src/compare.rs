@@ -1,4 +1,4 @@
-//! `bsmpm compare`: one quantity of several runs, as picture and table.
+//! `bsmpm compare`: draws and tabulates one quantity of several runs.
 
 use std::path::{Path, PathBuf};
 

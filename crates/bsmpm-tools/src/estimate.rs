@@ -1,5 +1,5 @@
-//! `bsmpm estimate`: predicts the cost of a run (T11.3), from trial runs of its first steps and of coarser versions, or
-//! from stored coefficients.
+//! `bsmpm estimate`: predicts the cost of a run (T11.3). The prediction uses trial runs (the first steps, and coarser
+//! versions of the case) or stored coefficients.
 
 use std::path::PathBuf;
 use std::thread;

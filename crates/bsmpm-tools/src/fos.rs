@@ -1,6 +1,7 @@
 //! `bsmpm fos`: factor of safety by strength reduction, or critical seismic coefficient, (T9.5) to (T9.7).
 //!
-//! `search` chooses factors, `trial` makes a run with each, and `curve` judges its displacement.
+//! `search` chooses factors, `trial` makes a run with each factor, and `curve` decides from its displacement whether it
+//! failed.
 
 use std::fs;
 use std::path::PathBuf;
@@ -61,8 +62,9 @@ run instead, and initial stresses ([initial]) are left out. The notes of the res
 
 With --stage every trial continues from the state at the end of that stage, which is computed once with full
 strength and [initial]. After one step the strength decreases to 1/F in 10 steps. The factor is the one by which
-the strength may decrease after that stage. A case with pore-water flow needs --stage; its pore pressures of
-that time stay constant, or with --undrained its pore water does not flow.
+the strength may decrease after that stage. A case with pore-water flow needs --stage. Its pore
+pressures of that time stay constant (drained failure). With --undrained, or if no soil is permeable, its pore
+water does not flow and its pressure follows the strain (undrained failure).
 
 DIR gets fos.json, fos.csv, fos.png (displacement against factor), fos_plastic-strain.png and
 fos_displacement.png (the first failed trial), and trials/. Complete trials of the same case and solver are
@@ -104,7 +106,7 @@ pub struct FosArguments {
     #[arg(long, value_name = "NAME")]
     pub stage: Option<String>,
     /// Undrained failure: pore pressures follow the strain while the strength decreases. Without it they stay constant,
-    /// as in a slow failure
+    /// as in a slow failure, unless no soil is permeable
     #[arg(long, requires = "stage")]
     pub undrained: bool,
     /// Width of the bands [default: 0.02; with --seismic 0.01]

@@ -1,4 +1,4 @@
-//! Observed order, Richardson extrapolation (T11.4) and grid convergence index (T11.5) of three grids.
+//! Convergence on three grids: observed order, Richardson extrapolation (T11.4) and grid convergence index (T11.5).
 
 use serde::Serialize;
 

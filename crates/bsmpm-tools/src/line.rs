@@ -1,4 +1,4 @@
-//! Fits straight lines to displacement curves before and after failure.
+//! Fits lines to displacement curves before and after failure, for failure loads.
 
 /// The branch after failure: from this many times the elastic displacement ..
 pub(crate) const BENT: f64 = 5.0;

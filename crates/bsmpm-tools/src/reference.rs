@@ -1,4 +1,4 @@
-//! Reads reference points from the literature, a laboratory or another program.
+//! Reads reference curves from the literature, a laboratory or another program.
 
 use std::fs;
 use std::path::Path;

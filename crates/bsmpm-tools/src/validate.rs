@@ -1,6 +1,7 @@
-//! `bsmpm validate`: runs the cases of a matrix and judges their histories against references. The matrix is read in
-//! `matrix` and looked through in `check`, the runs are made in `runs`, numbers (`measured`) are taken from them in
-//! `measure`, `course` and `kink`, the table is set in `table`, curves are drawn in `figure`.
+//! `bsmpm validate`: runs the cases of a validation matrix, and compares their histories with references.
+//!
+//! `matrix` reads the matrix and `check` checks it. `runs` makes the runs. `measure`, `course` and `kink` evaluate
+//! them. `table` and `figure` write the results.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Tests that files of a crate do not import each other in a circle.
+//! Tests that no crate has circular imports between its files.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -1,4 +1,4 @@
-//! Tests `bsmpm estimate` with a stub solver of known cost.
+//! Tests of `bsmpm estimate` with a stub solver of known cost.
 
 use std::env;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Compares the README's table of features with the case reader. `BSMPM_RENEW=1` renews it.
+//! Tests that the table of features in the repository's README agrees with the case reader. `BSMPM_RENEW=1` renews it.
 
 mod features {
     pub mod rows;

@@ -1,5 +1,5 @@
-//! Soft elastic background in all occupied cells (T2.13), for splines that see almost no material. It is part of the
-//! residual and the stiffness, and resists the displacement of one step or, in steady motion, its change (T2.14).
+//! Soft elastic background in all occupied cells (T2.13), for splines with almost no material. It resists the
+//! displacement of one step or, in steady motion, the change of this displacement (T2.14).
 
 mod form;
 mod integrals;

@@ -1,5 +1,5 @@
-//! Step size control: failed steps are halved, and doubled again after two easy steps. Attempts are powers of two of
-//! 1/1024 of the nominal step, so its end is reached exactly.
+//! Step size control. A failed step is halved; the length is doubled again after two easy steps. Each length is 1/1024
+//! of the nominal step times a power of two, so the nominal end is reached exactly.
 
 use crate::background::Resisted;
 use crate::energy::{Budget, Stored};

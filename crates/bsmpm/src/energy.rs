@@ -1,5 +1,5 @@
-//! Energy balance of a run, in J or, in plane strain, J per metre (T10.1) to (T10.3). [`Draft`] computes the terms of a
-//! step independently, so that the residual `closure` is a check. [`Budget`] is the energy bound of dynamic runs.
+//! Energy balance of a run (T10.1) to (T10.3), in J or, in plane strain, J per metre. [`Draft`] computes the terms of a
+//! step independently, so the residual (`closure`) is a check. [`Budget`] is the energy bound of dynamic runs.
 
 mod budget;
 

@@ -1,4 +1,4 @@
-//! Errors of the numerical method, with the material point, node or number that caused them.
+//! Errors of the numerical method. Each names the material point, node or number that caused it.
 
 use crate::material::MaterialError;
 use crate::method::Criteria;

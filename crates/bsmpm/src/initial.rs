@@ -1,4 +1,4 @@
-//! Initial stress on the drawn geometry (T9.1), (T9.2), and exchange of laws by stages.
+//! Initial stress on the drawn geometry (T9.1), (T9.2), and exchange of constitutive laws by stages.
 
 mod settle;
 

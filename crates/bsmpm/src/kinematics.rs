@@ -1,5 +1,5 @@
-//! Plane strain, axisymmetry and three dimensions: gradients, tensors, the exponent of F-bar (T3.2) and volume factors.
-//! Geometries differ in this module only.
+//! Geometries: plane strain, axisymmetry and 3-D. Each defines gradients, tensors, the exponent of F-bar (T3.2) and
+//! volume factors. No other module distinguishes them.
 
 mod axisymmetric;
 mod plane_strain;

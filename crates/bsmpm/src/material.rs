@@ -1,8 +1,8 @@
-//! Constitutive laws (chapter 4 of the theory manual): from trial elastic state (T3.3) to Kirchhoff stress and new
-//! elastic state.
+//! Constitutive laws (chapter 4 of the theory manual). A law computes the Kirchhoff stress and the new elastic state
+//! from the trial elastic state (T3.3).
 //!
-//! All laws are isotropic and use principal Hencky strains (T4.1). Stresses are in Pa, tension positive, in descending
-//! order. Laws store no state.
+//! All laws are isotropic, use principal Hencky strains (T4.1) and store no state. Stresses are in Pa, tension
+//! positive, in descending order.
 
 mod cam_clay;
 mod drucker_prager;

@@ -1,4 +1,4 @@
-//! Methods and convergence criteria of the nonlinear solution (chapter 5 of the theory manual).
+//! Options of the nonlinear solution: methods and convergence criteria (chapter 5 of the theory manual).
 
 /// How equilibrium is sought.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Layout of nodal arrays: node by node, `C` numbers per node.
+//! Layout of arrays of nodal values: node by node, `C` numbers per node.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Material points: the permanent state, one array per quantity, sorted by cell.
+//! Material points: their state between steps, as one array per quantity, sorted by cell.
 
 mod column;
 mod packed;

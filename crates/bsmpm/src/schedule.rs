@@ -1,4 +1,4 @@
-//! Ends of the nominal steps, including every output time, and interpolation of tables in time.
+//! End times of the nominal steps, including every output time, and interpolation of time tables.
 
 use std::ops::{Add, Mul, Sub};
 

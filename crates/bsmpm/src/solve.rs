@@ -1,4 +1,4 @@
-//! Search for equilibrium of one step (chapter 5 of the theory manual).
+//! Finds the equilibrium of one step by nonlinear iteration (chapter 5 of the theory manual).
 
 pub mod bordered;
 pub mod broyden;

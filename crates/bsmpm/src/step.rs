@@ -1,4 +1,5 @@
-//! One load or time step from t to t + dt (chapter 1 of the theory manual). Step numbers are those of the paper.
+//! One load or time step from t to t + dt (chapter 1 of the theory manual). Step numbers are those of section 2.4 of
+//! the paper.
 
 pub mod adjoint;
 pub mod apart;

@@ -1,4 +1,4 @@
-//! Vectors of the grid's dimension, and tensors, which are always three-dimensional.
+//! Vectors with the grid's dimension, and tensors, which are always three-dimensional.
 
 use nalgebra::{Matrix3, SMatrix, SVector};
 

@@ -1,4 +1,4 @@
-//! Parallel loops over points, with results that do not depend on the number of threads.
+//! Parallel loops over material points, whose results do not depend on the number of threads.
 
 use crate::exact::Exact;
 use rayon::Yield;

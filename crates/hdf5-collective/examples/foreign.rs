@@ -1,4 +1,4 @@
-//! Changes an HDF5 file of a checkpoint into one that this project never writes. Tests use it to verify that invalid
+//! Changes the HDF5 file of a checkpoint into one that this project never writes. Tests use it to verify that invalid
 //! files are rejected.
 //!
 //! - `foreign KIND FILE ARRAY` replaces an array of the file by one of the given kind, see [`forge`].

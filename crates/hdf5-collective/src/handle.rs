@@ -1,4 +1,4 @@
-//! HDF5's C functions behind handles that close themselves. All unsafe code of the crate is in this module.
+//! Wraps HDF5's C functions in handles that close themselves. All unsafe code of the crate is in this module.
 
 mod array;
 

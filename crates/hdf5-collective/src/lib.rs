@@ -2,7 +2,7 @@
 //! and each rank handles a range of rows. The crate does not interpret the numbers.
 //!
 //! A file contains only arrays `[rows, width]` in its root group: hard links, little-endian numbers of fixed size,
-//! chunks of 16,384 rows with Fletcher's checksum. It has no compression and no time stamps, so equal contents give
+//! chunks of 16,384 rows with Fletcher's checksum. A file has no compression and no time stamps, so equal contents give
 //! equal bytes. [`Reader`] rejects any other content before it allocates memory for it.
 //!
 //! All functions of [`Writer`] and [`Reader`] are collective. An error on one rank is an error on all ranks, except

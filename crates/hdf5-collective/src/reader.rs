@@ -1,4 +1,4 @@
-//! Reads a file on any number of ranks, each an equal range of the rows.
+//! Reads an HDF5 file on any number of ranks. Each rank reads an equal range of rows.
 
 use std::ops::Range;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Shape of an array: type of number, rows and width.
+//! Shape of an array in a file: number type, rows and width.
 
 /// What a number of an array is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,5 @@
-//! Errors of PETSc, which a silent error handler catches, and errors of this crate's checks of lengths, ranges and
-//! integer conversions.
+//! Errors of PETSc, which a silent error handler returns as Rust values, and errors of this crate's checks of lengths,
+//! ranges and integer conversions.
 
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};

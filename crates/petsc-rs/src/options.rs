@@ -1,4 +1,4 @@
-//! PETSc's options database: setting an option, and listing options that were not used.
+//! PETSc's options database: sets options, and lists options that were not used.
 
 use std::ptr;
 

@@ -1,4 +1,4 @@
-//! Initialisation of PETSc after MPI, its end before MPI ends, and agreement of errors between ranks.
+//! Starts PETSc after MPI, ends it before MPI, and lets all ranks agree on errors.
 
 use std::cell::Cell;
 use std::ffi::{CString, c_char, c_int};

@@ -1,4 +1,4 @@
-//! Runs each target on its corpus and on mutations of it.
+//! Tests that each fuzz target passes on stored inputs (corpora) and random changes of them.
 
 mod mutation;
 

@@ -1,4 +1,4 @@
-//! The record of a checkpoint, with a hash of itself.
+//! The record of a checkpoint: a JSON file with hashes of the HDF5 file and of itself.
 
 use std::collections::BTreeSet;
 use std::path::Path;

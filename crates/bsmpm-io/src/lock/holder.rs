@@ -1,4 +1,4 @@
-//! The process that holds a lock, and whether it is alive (Linux).
+//! Identifies the process that locks an output directory, and finds whether it still runs (Linux).
 
 use std::fmt::{self, Display, Formatter};
 use std::fs;

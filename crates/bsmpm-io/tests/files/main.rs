@@ -1,4 +1,4 @@
-//! Tests that files of a run are read back bitwise.
+//! Tests that the files of a run are read back with identical bits.
 
 mod checkpoint;
 mod directory;

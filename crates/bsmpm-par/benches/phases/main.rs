@@ -1,4 +1,4 @@
-//! Measures each phase of a step: `phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...`
+//! Measures the phases of a step, starting at a checkpoint: `phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...`
 
 mod kernels;
 mod machine;

@@ -1,4 +1,4 @@
-//! Checks that material points of a checkpoint are physically possible.
+//! Checks that the material points in a checkpoint have physically possible values.
 
 use super::refusal::{Refusal, agree};
 use super::write::infinite;

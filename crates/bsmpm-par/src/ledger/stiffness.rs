@@ -1,4 +1,5 @@
-//! Indicator `stiffness-loss` (T10.15): elastic over actual second-order work (Hill, 1958). It is 1 in elastic ground.
+//! Indicator `stiffness-loss` (T10.15): elastic divided by actual second-order work (Hill, 1958). The ratio is 1 in
+//! elastic ground.
 
 use super::Ledger;
 use crate::indicators::STIFFNESS_LOSS;

@@ -1,4 +1,4 @@
-//! Finds the largest residuals of a failed step, and remedies.
+//! Finds the largest residual forces in a failed step, and suggests remedies.
 
 use bsmpm::control::Failure;
 use bsmpm::error::{SolveError, StepError};

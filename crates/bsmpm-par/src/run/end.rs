@@ -1,4 +1,4 @@
-//! Ends a run with a frame, a checkpoint and the manifest.
+//! Ends a run: writes the last frame, the last checkpoint and the manifest `run.json`.
 
 use super::Run;
 use super::summary::StopCause;

@@ -1,4 +1,5 @@
-//! Begins stages. Rows and frames of that time show the state before, checkpoints the state after.
+//! Begins stages. At this time, history rows and frames show the state before the change, checkpoints the state after
+//! it.
 
 use super::Run;
 use crate::launch;

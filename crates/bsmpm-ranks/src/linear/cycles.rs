@@ -1,4 +1,4 @@
-//! Solves a system by KSP with spline multigrid as preconditioner.
+//! Solves a linear system by PETSc's KSP with spline multigrid as preconditioner.
 
 use super::choice::Choice;
 use super::direct::{StiffnessOperator, gather};

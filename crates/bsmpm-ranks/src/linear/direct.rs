@@ -1,4 +1,4 @@
-//! The direct solver as preconditioner of KSP, in single or, if necessary, double precision.
+//! The direct solver as preconditioner of PETSc's KSP, in single or, if necessary, double precision.
 
 use super::dissection::{Dissection, Precision};
 use super::system::trusted;

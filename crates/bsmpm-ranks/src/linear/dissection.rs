@@ -1,7 +1,8 @@
-//! Direct solver: multifrontal Cholesky factorisation (Duff and Reid, 1983) by nested dissection of a box of nodes.
+//! Direct solver: multifrontal Cholesky factorisation (Duff and Reid, 1983) in an order by nested dissection of a box
+//! of nodes.
 //!
-//! Each rank eliminates the unknowns that only its cells touch; groups of ranks then eliminate shared ones. The order
-//! is fixed, so that runs on the same ranks repeat bitwise.
+//! Each rank eliminates the unknowns that only its cells touch. Groups of ranks then eliminate the shared unknowns. The
+//! order is fixed, so that runs on the same ranks repeat bitwise.
 
 mod factor;
 pub(super) mod front;

@@ -1,8 +1,8 @@
-//! Multigrid over the splines, a preconditioner on one rank.
+//! Multigrid preconditioner over B-spline grids, on one rank.
 //!
-//! A coarser space has every other breakpoint. The smoother is a Chebyshev polynomial of an additive Schwarz method on
-//! overlapping boxes of 4 nodes along each axis. These contain divergence-free fields, so that iterations do not grow
-//! with the bulk modulus (de Prenter et al., 2020; Pé de la Riva et al., 2019).
+//! A coarser grid has every other breakpoint. The smoother is a Chebyshev polynomial of an additive Schwarz method on
+//! overlapping boxes of 4 nodes along each axis. A box can represent divergence-free fields. Therefore the number of
+//! iterations does not grow with the bulk modulus (de Prenter et al., 2020; Pé de la Riva et al., 2019).
 
 mod patches;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Solves a system by KSP with the direct solver as preconditioner.
+//! Solves a linear system by PETSc's KSP, with the direct solver as preconditioner.
 
 use super::choice::Choice;
 use super::direct::{DissectionFactor, DissectionPc, StiffnessOperator, gather};

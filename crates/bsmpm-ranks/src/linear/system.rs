@@ -1,4 +1,4 @@
-//! A linear system of PETSc, and the check of its solutions.
+//! A linear system that PETSc assembles and solves, and the check of its residual.
 
 use super::choice::Choice;
 use super::tally::Tally;

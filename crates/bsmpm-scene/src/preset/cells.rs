@@ -1,4 +1,5 @@
-//! Chooses the cells of a preset, with fine zones around footings, loads, rigid bodies, openings and corners.
+//! Chooses the cells of a grid for a preset, with fine zones around footings, loads, rigid bodies, openings and
+//! corners.
 
 use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};

@@ -1,4 +1,4 @@
-//! The extent of a moving rigid body, for fine zones of a preset.
+//! Computes the region that a moving rigid body passes through. A preset chooses fine cells there.
 
 use crate::record::Record;
 use crate::region;

@@ -1,4 +1,4 @@
-//! Data of an incomplete case from which a preset chooses cells and steps (T11.2).
+//! Reads from a case without cells or steps the data from which a preset chooses them (T11.2).
 
 use super::Preset;
 use super::rigid::{self, RigidExtent};

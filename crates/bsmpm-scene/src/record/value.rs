@@ -1,4 +1,4 @@
-//! Compares one value with the type that the schema requires.
+//! Compares one value of a case file with the type that the schema requires.
 
 use super::{Datum, ListRow};
 use crate::document::{Node, Value};

@@ -1,4 +1,4 @@
-//! Material points of an outline in one column of cells.
+//! Material points of a body with an outline in one column of cells.
 
 use super::edge::Edge;
 use super::reached;

@@ -1,4 +1,4 @@
-//! An edge of an outline: a straight line or a semicircle.
+//! One edge of the outline of a body: a straight line or a semicircle.
 
 /// An edge, from left to right; lengths in m from the grid's lower corner.
 #[derive(Clone, Copy, Debug, PartialEq)]

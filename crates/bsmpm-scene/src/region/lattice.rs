@@ -1,4 +1,4 @@
-//! Material points of a 3-D shape, with volumes integrated along vertical lines.
+//! Places the material points of a 3-D body, and integrates their volumes along vertical lines.
 
 use super::cells::{CellPlace, SLIVER, part, place};
 use super::reached;

@@ -1,4 +1,4 @@
-//! Integrates the volume of a 3-D shape along vertical lines.
+//! Integrates the volume of a 3-D body along vertical lines.
 
 use super::solid::{Section, SolidShape};
 

@@ -1,4 +1,4 @@
-//! Checks that a polygon has an area and no crossing edges.
+//! Checks that a polygon of a case has an area and no crossing edges.
 
 /// What is wrong with a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! 3-D shapes, described by the intervals of vertical lines inside them.
+//! Shapes of 3-D bodies, described by the intervals in which vertical lines are inside.
 
 use super::Edge;
 use super::raster::Raster;

@@ -1,4 +1,4 @@
-//! A closed surface of triangles, and the intervals of vertical lines inside it.
+//! A 3-D body bounded by triangles, and the intervals in which vertical lines are inside it.
 
 use std::collections::{BTreeMap, HashMap};
 

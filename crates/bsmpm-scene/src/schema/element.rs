@@ -66,8 +66,8 @@ static STAGE: Table = Table {
             "compression",
             GROWTH,
             Optional,
-            "Axial strain along y, positive when the sample shortens. In an isotropic test it is the volumetric \
-             strain.",
+            "Axial logarithmic strain along y, positive when the sample shortens. A sample that shortens by half has \
+             0.693. In an isotropic test it is the volumetric strain.",
         )
         .symbol("ε_a")
         .example("0.1"),

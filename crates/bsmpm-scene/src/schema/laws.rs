@@ -135,9 +135,15 @@ pub(crate) static MATERIAL: Table = Table {
     doc: "A material with a name. Its keys depend on its model: [how to choose a law](../how-to/choose-law.md).",
     keys: &[
         key("model", Choice(LawName::WORDS), Required, "Constitutive law.").example(r#""mohr-coulomb""#),
-        key("young", Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE), Required, "Young's modulus.")
-            .symbol("E")
-            .example(r#""30 MPa""#),
+        key(
+            "young",
+            Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
+            Required,
+            "Young's modulus. For modified-cam-clay it only sets the constant shear modulus G = E / (2 (1 + ν)). \
+             Take E = 3 (1 - 2ν) p'/κ* at a typical pressure p'.",
+        )
+        .symbol("E")
+        .example(r#""30 MPa""#),
         key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio.").symbol("ν").example("0.3"),
         key(
             "friction_angle",
@@ -316,9 +322,15 @@ pub(crate) static MATERIAL: Table = Table {
         )
         .symbol("OCR")
         .example("1.5"),
-        key("mu_s", Quantity(In::Number, BELOW_3), Optional, "Friction coefficient of slow shear. Required by mu-i.")
-            .symbol("μ_s")
-            .example("0.38"),
+        key(
+            "mu_s",
+            Quantity(In::Number, BELOW_3),
+            Optional,
+            "Friction coefficient of slow shear. In plane strain it is the sine of the friction angle. Required by \
+             mu-i.",
+        )
+        .symbol("μ_s")
+        .example("0.38"),
         key(
             "mu_2",
             Quantity(In::Number, BELOW_3),

@@ -176,10 +176,10 @@ pub(super) static HISTORY: Table = Table {
             "surface",
             Flag,
             Optional,
-            "For velocity, stress and the quantities of pore water: with true the value belongs to the place itself, \
-             from a plane through the values of the material points around it. Without this key it is the value of \
-             the nearest material point, or of the place if cells differ in size and the place is inside the \
-             material.",
+            "For velocity, stress and the quantities of pore water: with true the value is that of the place `at`, \
+             also at a surface, from a plane through the values of the neighbouring material points. Without this key \
+             it is the value of the nearest material point, which may be up to half a cell away. If cells differ in \
+             size and the place is inside the material, it is the value of the place.",
         ),
         key(
             "box",

@@ -19,7 +19,8 @@ static GROUND: Table = Table {
 pub(super) static RIGID: Table = Table {
     header: "[[rigid]]",
     doc: "A rigid body in frictional contact with the soil, without tension. Its motion is prescribed or follows \
-          from forces.",
+          from forces. Without both it rests. It may extend beyond the grid. On a plane or axis of symmetry draw the \
+          whole body or its half.",
     keys: &[
         key("name", Name, Required, "Name by which stages and histories refer to it.").example(r#""pipe""#),
         key("polygon", body::POLYGON, Optional, "Corners of a polygon at the start, clockwise or counter-clockwise.")

@@ -1,4 +1,4 @@
-//! Schema of the case file, its analysis, grid, boundaries and solver.
+//! Schema of the case file's main tables: analysis, grid, boundaries and solver.
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required, Retired};
@@ -58,7 +58,7 @@ pub static ROOT: Table = Table {
             "output",
             Kind::Table(&output::OUTPUT),
             Optional,
-            "Frames for ParaView. Without this table none are written.",
+            "Frames for ParaView. Without this table there is one at the start and one at the end of the run.",
         ),
         key("history", Tables(&output::HISTORY), Optional, "A column, or several, of history.csv."),
         key("check", Tables(&output::CHECK), Optional, "A bound of a history column."),
@@ -155,8 +155,8 @@ static ANALYSIS: Table = Table {
             "mass",
             Choice(MassMatrix::WORDS),
             Optional,
-            "Mass matrix of the nodes. Without this key it is consistent if nothing is in contact and, in addition, \
-             the ground shakes or all materials are elastic. Otherwise it is lumped.",
+            "Mass matrix of the nodes. Without this key it is consistent in an earthquake, and if all materials are \
+             elastic, as long as nothing is in contact. In all other cases it is lumped.",
         )
         .example(r#""consistent""#),
         key(
@@ -203,15 +203,15 @@ static GRID: Table = Table {
             "lower",
             Vector(In::Length, Range::ANY),
             Optional,
-            "Lower corner, where the first cell begins. Required with `cell`.",
+            "Lower corner, where the first cell begins. Required without `knots`.",
         )
         .example("[0.0, 0.0]"),
         key(
             "upper",
             Vector(In::Length, Range::ANY),
             Optional,
-            "Upper corner. Required with `cell`. If the length is not a whole number of cells, a free face is moved \
-             outwards.",
+            "Upper corner. Required without `knots`. If the length is not a whole number of cells, a free face is \
+             moved outwards.",
         )
         .example("[40.0, 12.0]"),
         key(
@@ -261,9 +261,10 @@ static GRAVITY: Table = Table {
             "acceleration",
             Vector(In::Acceleration, Range::ANY),
             Required,
-            "Acceleration of gravity at its full value. In a quasi-static analysis a horizontal component is a \
-             pseudo-static earthquake load: the seismic coefficient times 9.81 m/s2. Pore pressures and the stress of \
-             [initial] follow from the vertical component alone.",
+            "Acceleration of gravity at its full value. A dynamic analysis may incline it, for instance for a chute. \
+             In a quasi-static analysis a horizontal component is a pseudo-static earthquake load: the seismic \
+             coefficient times 9.81 m/s2. Pore pressures and the stress of [initial] follow from the vertical \
+             component alone.",
         )
         .symbol("g")
         .example("[0.0, -9.81]"),

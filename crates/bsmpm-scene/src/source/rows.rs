@@ -1,4 +1,4 @@
-//! Reads rows of numbers from text files: `{ file = "record.csv" }`.
+//! Reads rows of numbers from files that a case names: `{ file = "record.csv" }`.
 
 use super::{LIMIT, MAX_BYTES, bounded, stl};
 use crate::words::{Geometry, Word};
@@ -245,10 +245,10 @@ fn cells(line: &str) -> Vec<&str> {
     }
 }
 
-/// The unit in a heading such as `ax [m/s2]` or `t (s)`.
+/// The unit in a heading such as `ax [m/s2]`, `t (s)`, or `t / s` of ISO 80000.
 fn unit(heading: &str) -> Option<&str> {
-    let heading = heading.strip_suffix([']', ')'])?;
-    let (_, unit) = heading.rsplit_once(['[', '('])?;
+    let bracketed = heading.strip_suffix([']', ')']).and_then(|heading| heading.rsplit_once(['[', '(']));
+    let (_, unit) = bracketed.or_else(|| heading.rsplit_once(" / "))?;
     Some(unit.trim()).filter(|unit| !["", "-", "1"].contains(unit) && !unit.contains('"'))
 }
 
@@ -295,6 +295,7 @@ mod tests {
         }
         let parsed = rows("t [s], a (cm/s2)\n0.02, 3\n", (Some("x"), PLANE)).unwrap();
         assert_eq!(parsed, "[[\"0.02 s\",\"3.0 cm/s2\",0.0],]");
+        assert_eq!(rows("t / s, a / g\n0.02, 3\n", (Some("x"), PLANE)).unwrap(), "[[\"0.02 s\",\"3.0 g\",0.0],]");
         assert_eq!(rows("t a\n1 2", (Some("y"), PLANE)).unwrap(), "[[1.0,0.0,2.0],]");
         assert_eq!(rows("1 2", (Some("y"), &["x", "y", "z"])).unwrap(), "[[1.0,0.0,2.0,0.0],]");
     }

@@ -1,4 +1,4 @@
-//! Warns of bodies that approach each other and share nodes.
+//! Warns of bodies that approach within a cell. They then share nodes.
 
 use crate::case::{Case, Support};
 use crate::report::{Report, brief};

@@ -1,4 +1,4 @@
-//! Validates cells, and moves free faces of the grid outward to whole cells.
+//! Validates grid cells, and moves free faces of the grid outward to whole cells.
 
 use crate::case::Support;
 use crate::estimate::{self, MOST_UNKNOWNS};

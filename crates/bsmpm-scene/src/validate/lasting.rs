@@ -1,4 +1,4 @@
-//! Warns of permanent loads that only absorbing boundaries resist, which causes drift.
+//! Warns of permanent loads that only absorbing boundaries resist, because the ground then drifts.
 
 use super::physics::{ALONG, holds_at_rest};
 use super::place::{along, ring};

@@ -1,4 +1,4 @@
-//! Validates limit load analyses, and scales their stiffness and displacements (T9.8).
+//! Validates the limit load analysis of a case, and scales its stiffness and displacements (T9.8).
 
 use super::site;
 use crate::case::{
@@ -167,8 +167,8 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
     let rigid = case.rigid.iter().map(|rigid| &rigid.path);
     let mut paths = strips.clone().map(|(_, path)| path).chain(rigid);
     if paths.any(|path| path.moves() && !goes_on(path, case.analysis.end)) {
-        let message = "E0449: a prescribed displacement stops or turns back before analysis.end, but the limit load \
-                       is read at the end. Let the displacement grow until analysis.end.";
+        let message = "E0449: a prescribed displacement starts late, stops or turns back, but a limit load needs \
+                       one that grows from time 0 to analysis.end. Correct its path.";
         analysis.error(KEY, message, report);
     }
     if let Some(side) = strips.filter(|(_, path)| path.moves()).find_map(|(site, path)| opposed(case, site, path)) {

@@ -1,5 +1,5 @@
-//! Places C0 lines (repeated breakpoints) at material interfaces and ends of footings and loads. Strains may jump
-//! there.
+//! Places C0 lines (repeated breakpoints, across which strains may jump) at material interfaces and at ends of footings
+//! and loads.
 
 mod ends;
 mod faces;

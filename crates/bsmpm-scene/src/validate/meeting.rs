@@ -1,4 +1,4 @@
-//! Checks footings and prescribed segments that meet with different displacements.
+//! Checks adjacent footings and prescribed segments with different displacements, and refuses contradictory ones.
 
 use super::place::is_in;
 use crate::case::{Acting, Case};

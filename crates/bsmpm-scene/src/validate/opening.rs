@@ -1,4 +1,4 @@
-//! Warns of holes and notches with too few cells across.
+//! Warns of holes and notches of bodies that have too few cells across.
 
 use crate::case::{Case, NarrowestOpening};
 use crate::openings::{self, BodyOpening, GridFaces};

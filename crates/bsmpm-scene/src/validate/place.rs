@@ -1,4 +1,4 @@
-//! Checks whether places lie in the grid and in a body.
+//! Checks whether positions in a case lie in the grid and in a body.
 
 use crate::case::{Body, Face, Geometry};
 use crate::grid::GridSpec;

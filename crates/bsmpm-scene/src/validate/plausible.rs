@@ -1,4 +1,4 @@
-//! Warns of implausible input, such as values in a wrong unit.
+//! Warns of valid but implausible values in a case, such as a value in a wrong unit.
 
 mod direction;
 mod place;

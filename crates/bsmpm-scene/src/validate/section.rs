@@ -1,4 +1,4 @@
-//! Warns of section forces that include part of a nearby load.
+//! Warns of histories of section forces that include part of a load near the section.
 
 use super::{place, stage};
 use crate::case::{Case, Quantity, RigidShape, RigidSolid};

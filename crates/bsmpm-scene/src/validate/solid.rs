@@ -1,4 +1,4 @@
-//! Refuses keys that the geometry (plane or 3-D) does not have.
+//! Refuses keys that do not exist in the geometry of a case (two-dimensional or 3-D).
 
 use crate::case::{Case, FaceSupport, Support};
 use crate::record::Record;

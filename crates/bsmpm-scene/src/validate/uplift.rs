@@ -1,4 +1,4 @@
-//! Warns of rigid bodies below the water table, which have no buoyancy.
+//! Warns of rigid bodies below the water table, because the program does not compute their buoyancy.
 
 use crate::case::{Case, Rigid, RigidShape, Water};
 use crate::report::Report;

@@ -4,8 +4,8 @@ choice! {
     /// What a history records, without what it needs besides, which [`Quantity`](crate::Quantity) has.
     pub enum Measurement {
         /// The coordinate x that `percentile` per cent of the material points do not exceed. It is a coordinate: the
-        /// initial length of the body is not subtracted. For the run-out of a flow use `percentile = 99`, because
-        /// single material points and a thin tip run ahead.
+        /// initial length of the body is not subtracted, and in 3-D it is x and no radius. For the run-out of a flow
+        /// use `percentile = 99`, because single material points and a thin tip run ahead.
         Runout = "runout",
         /// Position of the front: the largest x of the lowest occupied row of cells at which the material points fill
         /// half of a cell. On finer grids it does not converge if the tip is thin. For a run-out use `runout` with
@@ -61,8 +61,8 @@ choice! {
         PorePressure = "pore-pressure",
         /// Pore pressure of all material points, or of those of a material or body, positive in compression.
         PorePressures = "pore-pressures",
-        /// Pore pressure minus hydrostatic pressure at the material point that is nearest to `at` at the start, where
-        /// water flows.
+        /// Pore pressure minus the hydrostatic pressure of the present water level, at the material point that is
+        /// nearest to `at` at the start, where water flows.
         ExcessPressure = "excess-pressure",
         /// Porosity at the material point that is nearest to `at` at the start, where water flows.
         Porosity = "porosity",

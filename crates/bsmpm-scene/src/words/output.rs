@@ -43,7 +43,7 @@ choice! {
         Density = "density",
         /// Pore pressure in Pa, positive in compression.
         PorePressure = "pore-pressure",
-        /// Pore pressure minus hydrostatic pressure in Pa, where water flows.
+        /// Pore pressure minus the hydrostatic pressure of the present water level, in Pa, where water flows.
         ExcessPressure = "excess-pressure",
         /// Darcy velocity in m/s: volume of water per area and time, relative to the soil.
         Flux = "flux",
@@ -113,7 +113,7 @@ choice! {
         PlasticStrain = "plastic-strain",
         /// Pore pressure in Pa, positive in compression.
         PorePressure = "pore-pressure",
-        /// Pore pressure minus hydrostatic pressure in Pa, where water flows.
+        /// Pore pressure minus the hydrostatic pressure of the present water level, in Pa, where water flows.
         ExcessPressure = "excess-pressure",
     }
 }

@@ -1,4 +1,4 @@
-//! Accepted words for options of the method, such as the mass matrix.
+//! Words that a case accepts for options of the method, such as the mass matrix.
 
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::WallVelocity;

@@ -1,4 +1,4 @@
-//! Tests the bad inputs I01 to I26, except those in `mutation`, `texts` and `bsmpm-trials`.
+//! Tests that each invalid input of the list `MATRIX` below is refused, or accepted with a warning.
 
 use super::{DYNAMIC, Row, STATIC, row, verify};
 use bsmpm_scene::Case;

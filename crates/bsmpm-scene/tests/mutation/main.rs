@@ -1,4 +1,4 @@
-//! Tests that wrong keys and values never cause a panic.
+//! Tests that wrong keys and values in a case never cause a panic.
 
 mod bases;
 mod slips;

@@ -1,4 +1,4 @@
-//! Finds the values of keys in the text of a case.
+//! Finds the values of keys in the text of a case, so that tests can replace them.
 
 use bsmpm_scene::schema::{Dimension, Kind, Presence, ROOT, Range, Table};
 use std::ops::Range as Span;

@@ -1,4 +1,4 @@
-//! Tests messages for mistakes of new users that need no run.
+//! Tests of the messages for mistakes of new users that are found without a run.
 
 mod rows;
 

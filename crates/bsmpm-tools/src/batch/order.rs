@@ -1,4 +1,4 @@
-//! A run of a batch: the case with its settings and name.
+//! One run of a batch: the case with its changed keys, and its name.
 
 use std::path::Path;
 

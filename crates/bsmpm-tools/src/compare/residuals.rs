@@ -1,4 +1,4 @@
-//! Draws the convergence of one step in several runs (Fig. 4 of the paper).
+//! Draws how one step converges in several runs (as figure 4 of the paper).
 
 use std::fmt::Write;
 use std::path::Path;

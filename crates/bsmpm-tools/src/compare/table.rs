@@ -1,4 +1,4 @@
-//! Writes curves as a table with a row for each x.
+//! Writes the curves of several runs as a table with one row per x.
 
 use super::runs::Runs;
 use crate::picture::axes::label;

@@ -1,4 +1,5 @@
-//! Extrapolates the work of coarser versions to a case. In dynamics the iterations are a + b/h with the cell size h.
+//! Extrapolates the work of coarser versions to a case. In dynamics, the number of iterations is fitted by a + b/h,
+//! with the cell size h.
 
 use bsmpm_scene::Regime;
 

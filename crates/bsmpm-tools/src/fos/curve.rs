@@ -1,4 +1,4 @@
-//! Judges failure by the curve of displacement against factor (T9.7).
+//! Decides from the curve of displacement against factor whether a trial failed (T9.7).
 
 use crate::line::{BENT, FALLEN, FittedLine};
 

@@ -1,4 +1,4 @@
-//! Runs trials in parallel, and stops those that the search no longer needs.
+//! Runs trials of `bsmpm fos` in parallel, and stops unneeded ones.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};

@@ -1,4 +1,4 @@
-//! Decisive displacement of a trial, which the material of a block of cells exceeds.
+//! Displacement by which `bsmpm fos` judges a trial: a block of cells moves at least as far.
 
 use bsmpm_io::frame::Frame;
 use serde::Serialize;

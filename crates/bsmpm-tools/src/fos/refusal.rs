@@ -44,8 +44,8 @@ pub fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
         ),
         (
             case.stages.iter().any(|stage| stage.strength_reduction.is_some()),
-            "E0815: a stage of the case has `strength_reduction`, and `bsmpm fos` reduces the strength again. Remove \
-             `strength_reduction` from the stage.",
+            "E0815: the case reduces its strength at a stage (`strength_reduction`), and `bsmpm fos` reduces it again. \
+             Remove `strength_reduction` from the case.",
         ),
         (
             !has_strength,

@@ -1,4 +1,4 @@
-//! Writes the result of a search as text, CSV and JSON.
+//! Writes the factor of safety and its trials as text, CSV and JSON.
 
 use bsmpm_messages::headed;
 use serde::Serialize;

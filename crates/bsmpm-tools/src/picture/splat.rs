@@ -1,4 +1,4 @@
-//! Fills a body with the colour of the nearest material point.
+//! Draws a body: each pixel has the colour of the nearest material point.
 
 use std::collections::HashSet;
 

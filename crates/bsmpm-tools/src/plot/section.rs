@@ -1,4 +1,4 @@
-//! A section of a 3-D run: material points near a plane.
+//! Selects the material points of a 3-D run near a section plane.
 
 use bsmpm_io::frame::{FieldValues, Frame};
 

@@ -1,4 +1,4 @@
-//! Combinations of the keys and values that a sweep varies.
+//! Forms all combinations of the keys and values that a sweep varies.
 
 /// Settings of a sweep at most; more is a mistake in a list.
 const MOST: usize = 10_000;

@@ -1,4 +1,4 @@
-//! Writes the result of a sweep as text, CSV and JSON.
+//! Writes error and cost of each setting of a sweep as text, CSV and JSON.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! Computes a factor of safety for a setting, in place of a run.
+//! Computes a factor of safety for a setting of a sweep, in place of a run.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Writes a setting as a case file with its original comments.
+//! Writes a setting of a sweep as a case file, with the original comments.
 
 use bsmpm_scene::schema::{Kind, ROOT, Table as Schema};
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};

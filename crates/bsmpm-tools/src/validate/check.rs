@@ -1,5 +1,4 @@
-//! Whether the parts of a matrix fit each other: what can be seen before anything runs is refused here, none of it
-//! after hours.
+//! Checks a validation matrix for contradictions before any run starts.
 
 use std::path::Path;
 

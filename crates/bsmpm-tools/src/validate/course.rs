@@ -1,4 +1,4 @@
-//! Courses of a column over another one: where a value is reached, and windows from one value to another.
+//! Evaluates one history column over another: where it first reaches a value, and means over an interval.
 
 /// Relative distance at which two values are the same.
 const SAME: f64 = 1e-9;

@@ -1,4 +1,4 @@
-//! Entries of the matrix that stand for many: one for each choice of the words in their table `each`.
+//! Expands an entry of the validation matrix with a table `each` into one entry per combination of values.
 
 use toml::{Table, Value};
 

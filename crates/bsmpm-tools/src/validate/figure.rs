@@ -1,4 +1,4 @@
-//! Curves of several runs in one picture: what `bsmpm compare` draws.
+//! Draws curves of several runs of a study in one picture, by `bsmpm compare`.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Failure loads: where a load-displacement curve bends away from its elastic beginning.
+//! Finds a failure load: the load at which a load-displacement curve bends away from its elastic branch.
 
 use super::course::reached;
 use super::matrix::MatrixKink;

@@ -1,4 +1,4 @@
-//! The matrix as it is written: unknown keys are errors. Whether its parts fit each other is seen in `check`.
+//! Reads the validation matrix, a TOML file of studies. Unknown keys are errors; `check` finds contradictions.
 
 use std::collections::BTreeMap;
 use std::fs;

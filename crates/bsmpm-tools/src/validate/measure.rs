@@ -1,4 +1,4 @@
-//! Numbers of histories: values, orders of convergence, extrapolations. Failure loads are found in `kink`.
+//! Computes the numbers of the validation table from histories: values, orders of convergence and extrapolations.
 
 use std::collections::BTreeMap;
 

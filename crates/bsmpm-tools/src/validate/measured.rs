@@ -1,4 +1,4 @@
-//! What a history gives: a number, or why there is none.
+//! A number computed from a history, or the reason why it is missing.
 
 /// A number, and what its reader should know.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! No run of the validation is warned of as physics that is probably not meant: those warnings would be false.
+//! Tests that no run of the validation matrix causes a warning of implausible input.
 
 use super::matrix::ValidationMatrix;
 use bsmpm_messages::code_of;

@@ -1,4 +1,4 @@
-//! The runs of a study, one after another: what they are made from, and what they gave.
+//! Makes the runs of a study of the validation matrix, one after another.
 
 use std::fs;
 use std::path::Path;

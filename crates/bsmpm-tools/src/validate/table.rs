@@ -1,4 +1,4 @@
-//! The table: for the screen study by study, as Markdown theme by theme, and as CSV whole.
+//! Writes the validation table to the screen, as Markdown by theme, and as CSV.
 
 use crate::launch::RunCost;
 use crate::report::{Quoted, ReportTable, number, or_dash, some};

@@ -1,4 +1,4 @@
-//! Features of the README's table, as lines of a case.
+//! Rows of the table of features (`tests/features.rs`), each as lines of a case.
 
 /// A feature as what it adds to a block of soil.
 pub struct Feature {

@@ -1,4 +1,4 @@
-//! Tests `bsmpm plot`, `compare`, `validate` and `fos` on synthetic runs.
+//! Tests of `bsmpm plot`, `compare`, `validate` and `fos` on synthetic runs.
 
 mod collapse;
 mod compare;

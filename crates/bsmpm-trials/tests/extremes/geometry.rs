@@ -1,4 +1,4 @@
-//! Positions of material in its cells (N06, N15-N17).
+//! Tests of material at any position in its cells.
 
 use crate::physics::scene::{Scene, axis, by_id, hencky};
 use crate::physics::solver::Skyline;

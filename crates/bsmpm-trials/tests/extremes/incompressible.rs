@@ -1,4 +1,4 @@
-//! Poisson's ratios towards one half (N01).
+//! Tests of Poisson's ratios towards one half.
 
 use crate::physics::scene::{Scene, axis, hencky};
 use crate::physics::solver::Skyline;

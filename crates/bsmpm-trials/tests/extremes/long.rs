@@ -1,4 +1,4 @@
-//! Long runs and large numbers of steps (N18-N21).
+//! Tests of long runs and large numbers of steps.
 
 use crate::scenes::{Footing, block, layers};
 use crate::solver::Run;

@@ -1,8 +1,8 @@
-//! Extreme cases: each row gives the right value or a clean refusal, or is printed as failing.
+//! Tests of extreme cases. A case passes if its result is within its bound or if the program refuses it.
 //!
-//! `rows` declares the rows with their bounds and known failures; `table` judges and prints; the other files measure,
-//! on the physics alone or through the program. `cargo test` checks the declaration only; `--short` and `--full` run
-//! the rows.
+//! `rows.rs` lists the cases with bounds and known failures, and `table.rs` judges and prints them. The other files
+//! measure, by the library `bsmpm` or by complete runs. `cargo test` checks the list only; `--short` and `--full`
+//! measure.
 
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 

@@ -1,4 +1,4 @@
-//! One material point at extreme strain, strength and stiffness (N02-N05, N17, N25).
+//! Tests of one material point at extreme strain, strength and stiffness.
 
 use crate::physics::random::Random;
 use crate::physics::scene::hencky;

@@ -1,4 +1,4 @@
-//! Few and many points per cell (N07, N08).
+//! Tests of few and many points per cell.
 
 use crate::physics::scene::{Scene, axis, hencky};
 use crate::scenes::{Collapse, Footing};

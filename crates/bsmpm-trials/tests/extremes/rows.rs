@@ -1,4 +1,4 @@
-//! All rows of the extremes: number, measurement, bounds, known failures.
+//! List of all extreme cases: number, measurement, bounds and known failures.
 
 use crate::table::Limit::{AtMost, Reported, Same, Within};
 use crate::table::{Row, row};

@@ -1,4 +1,4 @@
-//! Cases of the rows, in any units and at any place.
+//! Cases for the extreme parameters, in any units and with any origin.
 
 /// What a metre, a kilogram and a second are, and where the origin lies (m).
 #[derive(Clone, Copy, Debug)]

@@ -1,4 +1,4 @@
-//! Tiny, huge and idle steps (N09, N10, N22-N24).
+//! Tests of tiny, huge and idle steps.
 
 use crate::physics::random::Random;
 use crate::physics::scene::{Scene, axis, hencky};

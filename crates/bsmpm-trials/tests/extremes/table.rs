@@ -1,4 +1,4 @@
-//! A row of the extremes, its verdict and its printing.
+//! Judges and prints a row of the table of extreme cases.
 
 pub use crate::support::driver::Depth;
 use crate::support::driver::{Column, Judged, Verdict, caught, first_line, number, numbers, words};

@@ -1,4 +1,4 @@
-//! Other units and origins (N13, N14).
+//! Tests of other units and origins.
 
 use crate::scenes::{Collapse, Footing, SI, Units, block};
 use crate::solver::Run;

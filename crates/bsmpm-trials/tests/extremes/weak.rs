@@ -1,4 +1,4 @@
-//! Cohesionless soil, very different layers, any gravity (N02, N11, N12).
+//! Tests of cohesionless soil, of layers with very different stiffness and of any gravity.
 
 use crate::physics::scene::{Scene, axis, by_id, hencky};
 use crate::scenes::{Collapse, RODS, Soil, layers};

@@ -1,4 +1,4 @@
-//! Ranks that do not see the same files.
+//! Tests of ranks that do not see the same files.
 
 use crate::ground::{Ground, RUN, Trial, results, same};
 use crate::support::{Ears, Output, processes, program};

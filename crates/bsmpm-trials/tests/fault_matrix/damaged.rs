@@ -1,4 +1,4 @@
-//! Damaged, foreign and hostile checkpoints: refused by name, skipped by `auto`.
+//! Tests that damaged or foreign checkpoints are refused if named, and skipped by `--restart auto`.
 
 use crate::ground::{Ground, Trial, spread};
 use crate::support::{example, processes};

@@ -1,4 +1,4 @@
-//! Events of the case before the faults, so that restarts are tested with a changing state.
+//! Tests that the case of the fault tests yields, moves points between ranks and cuts a step.
 
 use crate::ground::{Ground, Trial};
 use crate::support::results::{all_frames, ids, steps};

@@ -1,4 +1,4 @@
-//! The strip footing, killed ten times on 2, 3 and 1 ranks, against the uninterrupted run.
+//! Tests that a strip footing, killed ten times on 2, 3 and 1 ranks, ends like the uninterrupted run.
 
 use crate::ground::{Ground, spread};
 use crate::support::results::{history, manifest};

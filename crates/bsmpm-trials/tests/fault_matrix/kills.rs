@@ -1,4 +1,4 @@
-//! Killed processes.
+//! Tests of runs with killed processes.
 
 use crate::ground::{Ground, INTERVAL, spread};
 use crate::support::Running;

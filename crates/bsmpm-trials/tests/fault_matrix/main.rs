@@ -1,8 +1,8 @@
-//! Faults: killed ranks, full disks, damaged checkpoints, signals, other ranks. After each, a run continues to the end
-//! that it would have had, or says why not.
+//! Tests of faults: killed ranks, full disks, damaged checkpoints, signals and changed numbers of ranks. After each
+//! fault, the continued run must end like the uninterrupted run, or give the reason.
 //!
-//! `rows` declares them, `ground` has the case, `table` judges, and the other files cause the faults. `cargo test`
-//! checks the declaration only; `--short` and `--full` run the rows.
+//! `rows.rs` lists the faults, `ground.rs` has the case, and `table.rs` judges. The other files cause the faults.
+//! `cargo test` checks the list only; `--short` and `--full` cause the faults.
 
 mod apart;
 mod damaged;

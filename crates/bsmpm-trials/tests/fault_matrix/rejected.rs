@@ -1,4 +1,4 @@
-//! Converged steps that are rejected on purpose and repeated without a trace.
+//! Tests that a converged step can be rejected and repeated without changing the results.
 
 use crate::ground::{Ground, results, same};
 use crate::restart::{cases, left};

@@ -1,4 +1,4 @@
-//! Runs that stop regularly and continue.
+//! Tests of runs that stop regularly and continue.
 
 use crate::ground::{Ground, Results, results, same};
 use crate::support::results::{differences, history, last_frame, manifest, steps};

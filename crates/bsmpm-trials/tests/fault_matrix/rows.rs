@@ -1,4 +1,4 @@
-//! All rows of the faults: number, cause, and repetitions `[short, full]`.
+//! List of all faults: number, cause, and repetitions in the short and full tests.
 
 use crate::table::{Row, row};
 use crate::{apart, damaged, events, footing, kills, places, rejected, restart, signals, solver, writing};

@@ -1,4 +1,4 @@
-//! Signals and time limits: the run stops without loss and continues.
+//! Tests that signals and time limits stop a run, which then continues without loss.
 
 use crate::ground::{Ground, INTERVAL, results, same, spread};
 use crate::support::Running;

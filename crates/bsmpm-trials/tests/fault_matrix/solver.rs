@@ -1,4 +1,4 @@
-//! Steps that the solver cannot make: each reason leads to shorter steps, and none is accepted.
+//! Tests of steps without a solution: the program shortens the step, and accepts no wrong one.
 
 use crate::ground::{Ground, RUN};
 use crate::support::Scratch;

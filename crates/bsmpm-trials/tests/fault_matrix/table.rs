@@ -1,4 +1,4 @@
-//! A row of the faults, its verdict and its printing.
+//! Judges and prints a row of the table of faults.
 
 use crate::ground::Ground;
 use crate::support::driver::{Column, Depth, Judged, Verdict, caught, first_line, number, numbers, words};

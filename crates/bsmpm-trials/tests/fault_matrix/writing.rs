@@ -1,4 +1,4 @@
-//! Checkpoints while they are written: order on the disk, full and slow disks, killed writers.
+//! Tests of faults while a checkpoint is written: full disks, slow disks and killed ranks.
 
 use crate::ground::{Ground, INTERVAL, RUN, Trial, results, same, same_but_for_frames, spread};
 use crate::support::results::manifest;

@@ -1,4 +1,4 @@
-//! Solves second-order cone programs with Clarabel (Goulart and Chen, 2024).
+//! Solves second-order cone programs for limit analysis, with Clarabel (Goulart and Chen, 2024).
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::{NonnegativeConeT, SecondOrderConeT, ZeroConeT};

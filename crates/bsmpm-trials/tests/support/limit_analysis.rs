@@ -1,8 +1,9 @@
 //! Strict bounds of the limit load of a footing on Tresca clay, by finite-element limit analysis (Sloan, 1988 and 1989;
 //! Makrodimopoulos and Martin, 2006 and 2007).
 //!
-//! In axisymmetry S = r sigma and T = r tau are linear in each triangle: dS_r/dr + dT/dz = sigma_theta and dT/dr +
-//! dS_z/dz = 0. The velocities are u = psi_z/r and w = -psi_r/r with a quadratic stream function psi.
+//! In axisymmetry the products of stress and radius r are linear in each triangle. The velocities follow from a
+//! quadratic stream function psi: u = psi_z/r along r and w = -psi_r/r along the axis z, with derivatives as
+//! subscripts.
 
 use super::conic::{Program, Sum};
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Runs the program in a scratch directory, and reads its results.
+//! Test helper: runs the program in a scratch directory, and reads its results.
 
 #![allow(dead_code)] // every test program takes its part of this
 

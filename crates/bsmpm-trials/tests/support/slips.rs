@@ -1,4 +1,4 @@
-//! Upper bounds for undrained clay, by discontinuity layout optimisation (Smith and Gilbert, 2007).
+//! Upper bounds of limit loads of undrained clay, by discontinuity layout optimisation (Smith and Gilbert, 2007).
 
 use super::conic::{Program, Sum};
 

@@ -1,4 +1,4 @@
-//! Tests checkpoint files of several ranks and of killed writers.
+//! Tests of checkpoints that several ranks write, and of killed ranks.
 
 use crate::support::processes::{self, Output};
 use crate::support::{Scratch, entries, example};

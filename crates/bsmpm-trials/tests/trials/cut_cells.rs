@@ -1,4 +1,4 @@
-//! Tests cut cells: independence of cut, load steps and ranks.
+//! Tests that results in cut cells depend neither on the cut nor on steps or ranks.
 
 use crate::support::Scratch;
 use crate::support::cases::{changed, slope};

@@ -1,4 +1,4 @@
-//! Tests that a run that creates energy ends with exit code 80.
+//! Tests that a dynamic run that creates energy ends with exit code 80.
 
 use crate::support::results::{history, manifest};
 use crate::support::{Scratch, shipped};

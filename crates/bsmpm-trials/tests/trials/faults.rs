@@ -1,4 +1,4 @@
-//! Tests that a failure on any rank ends the job.
+//! Tests that a failure on any rank ends all ranks.
 
 use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed};
 use crate::support::results::{all_finite, all_frames, history, manifest, steps};

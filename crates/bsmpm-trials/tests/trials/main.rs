@@ -1,4 +1,4 @@
-//! Tests of the programs, with a file for each subject.
+//! Tests of the finished programs, with one file for each subject.
 
 mod axisymmetric;
 mod background;

@@ -1,4 +1,4 @@
-//! Compares memory estimates with runs (rows F37, I20).
+//! Tests that memory estimates agree with runs.
 
 use crate::support::results::manifest;
 use crate::support::{Scratch, shipped};

@@ -1,4 +1,4 @@
-//! Compares coarse versions of shipped cases with closed forms and bounds.
+//! Tests that coarse versions of shipped cases agree with closed forms and limit load bounds.
 
 use crate::support::bounds::{pipe, plate, strip};
 use crate::support::circles::strip_on_two_clays;

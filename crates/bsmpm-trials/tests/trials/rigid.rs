@@ -1,4 +1,4 @@
-//! Tests rigid bodies, and the thrust of sand on a wall.
+//! Tests of rigid bodies, among them the thrust of sand on a wall.
 
 use crate::support::cases::changed;
 use crate::support::results::{at, history, manifest};

@@ -1,4 +1,4 @@
-//! Compares waves in a saturated column with the telegraph equation.
+//! Tests that waves in a saturated column agree with the telegraph equation.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

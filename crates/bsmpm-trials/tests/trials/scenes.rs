@@ -1,4 +1,4 @@
-//! Tests footings, loads, layers and initial stress on several ranks.
+//! Tests of footings, loads, layers and initial stress on several ranks.
 
 use crate::support::cases::{SLIDING_BLOCK, changed};
 use crate::support::results::{all_finite, at, differences, history, last_frame, manifest};

@@ -1,4 +1,4 @@
-//! Tests a column that drains under its weight (Liakopoulos, 1965).
+//! Tests of a column that drains under its weight (Liakopoulos, 1965).
 
 use crate::support::results::{at, history};
 use crate::support::{Scratch, shipped};

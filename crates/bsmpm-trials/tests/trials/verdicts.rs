@@ -1,4 +1,4 @@
-//! Tests that indicators beyond their limits end a run with exit code 82.
+//! Tests that a run whose indicator exceeds its limit ends with exit code 82.
 
 use crate::support::Scratch;
 use crate::support::cases::slope;

@@ -1,4 +1,4 @@
-//! Tests that friction acts on the effective normal force (`ru`).
+//! Tests that friction acts on the effective normal force, with pore pressure by `ru`.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

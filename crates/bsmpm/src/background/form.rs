@@ -1,4 +1,4 @@
-//! Stiffness matrices of the soft background (T2.13) for single cells.
+//! Stiffness matrices of the soft elastic background (T2.13) in single cells.
 
 use super::integrals::{FormProducts, Integrals};
 use super::tensor::TensorForms;

@@ -1,4 +1,4 @@
-//! Integrals of products of one-dimensional splines, for the background's stiffness (T2.13).
+//! Integrals of products of one-dimensional splines, for the stiffness of the soft background (T2.13).
 
 use crate::gauss::GAUSS;
 use crate::grid::shape::with_width;

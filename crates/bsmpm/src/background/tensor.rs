@@ -1,4 +1,4 @@
-//! Product with the background's stiffness (T2.13) in three dimensions, axis by axis, for eight cells at a time.
+//! Multiplies nodal displacements by the stiffness of the soft background (T2.13) in 3-D, for eight cells at a time.
 
 use super::integrals::{Integrals, KINDS};
 use crate::grid::shape::with_width;

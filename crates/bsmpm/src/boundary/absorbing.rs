@@ -1,5 +1,5 @@
-//! Absorbing faces: nodal dashpots and static forces, part of the residual and the stiffness (T6.11) to (T6.13),
-//! (T6.15).
+//! Absorbing faces of the grid: nodal dashpots and static forces (T6.11) to (T6.13), (T6.15), in residual and
+//! stiffness.
 
 use super::contact::face_cell;
 use super::{Boundary, Support};

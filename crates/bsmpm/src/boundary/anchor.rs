@@ -1,4 +1,5 @@
-//! Anchors of surface points to the nearest material points, which move them after each step (T6.4).
+//! Anchors surface points of footings, loads and drains to the nearest material points, which move them after each step
+//! (T6.4).
 
 use super::strip::{Strip, displacement, reduce};
 use super::surface::{Anchors, SurfacePoint};

@@ -1,4 +1,4 @@
-//! Coulomb's friction law, contact statuses and contact reports (T7.1), (T7.2).
+//! Coulomb's friction law, contact statuses and contact forces (T7.1), (T7.2).
 
 use crate::tensor::Vector;
 

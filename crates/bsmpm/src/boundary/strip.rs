@@ -1,10 +1,10 @@
-//! Rigid footings and prescribed segments (`Strip`): a penalty with a traction that is carried from step to step
-//! (T6.5), (T6.6). A [`StripContact`] permits sliding and separation (T7.5), (T7.6).
+//! Rigid footings and prescribed segments (`Strip`). A penalty stiffness imposes the displacement; its traction is
+//! stored from step to step (T6.5), (T6.6). A [`StripContact`] permits sliding and separation (T7.5), (T7.6).
 //!
 //! # Adjacent footings
 //!
 //! Between adjacent footings with different motions, the prescribed displacement is a spline (T6.7). Surface points
-//! follow both motions in fixed proportions ([`MotionShare`]), and their forces are divided in the same way.
+//! there follow both motions in fixed proportions ([`MotionShare`]), and divide their forces in the same proportions.
 
 mod contact;
 mod point;

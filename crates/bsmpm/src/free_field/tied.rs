@@ -1,4 +1,5 @@
-//! Solution of a free-field column, whose nodes of a row share one displacement: a [`Halo`] and a band solver.
+//! Solves a free-field soil column, in which the nodes of a row share one displacement, by a [`Halo`] and a band
+//! solver.
 
 use crate::error::SolveError;
 use crate::exact::Exact;

@@ -1,5 +1,5 @@
-//! Extended B-splines: weights e_ij (T2.11) and choice of the full cell to which a function is tied, for
-//! [`step::extension`](crate::step::extension).
+//! Extended B-splines: chooses the full cell to which a function of a nearly empty cell is tied, and its weights
+//! (T2.11). Used by [`step::extension`](crate::step::extension).
 
 use super::{Grid, KnotVector};
 

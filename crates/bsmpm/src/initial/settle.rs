@@ -1,4 +1,5 @@
-//! Initial equilibrium with the laws of the materials. The out-of-balance force is removed in parts (T9.4).
+//! Brings the initial state to equilibrium with the laws of the materials, by removing the out-of-balance force in
+//! parts (T9.4).
 
 use super::{Undeformed, b_e_of, set_elastic};
 use crate::error::StepError;

@@ -1,4 +1,5 @@
-//! Interface of constitutive laws. A law is a file in this folder that implements [`Law`], and a line in `material.rs`.
+//! Interface of constitutive laws. A new law is a file in this folder that implements [`Law`], and a line in
+//! `material.rs`.
 
 use super::{Elastic, Moduli};
 use crate::real::Real;

@@ -1,4 +1,5 @@
-//! Mobilised strength: the reciprocal of the strength reduction factor at which a stress reaches the yield surface.
+//! Mobilised strength of a stress: 1 divided by the strength reduction factor at which the stress reaches the yield
+//! surface.
 
 use super::Material;
 

@@ -1,4 +1,4 @@
-//! Symmetric positive definite approximation of the tangent of a yielding point (T5.7), for the factorised stiffness
+//! Symmetric positive definite approximation of the tangent at a yielding point (T5.7), for the stiffness matrix
 //! (Higham, 1988).
 
 use super::Response;

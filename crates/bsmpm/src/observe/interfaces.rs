@@ -1,4 +1,4 @@
-//! Distance of material interfaces from their initial grid lines. Strains can jump at C0 lines only.
+//! Distance that material interfaces moved from their initial grid lines. Strains can jump at C0 lines only.
 
 use crate::grid::KnotVector;
 use crate::model::Model;

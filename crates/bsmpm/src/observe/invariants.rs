@@ -1,4 +1,4 @@
-//! Invariants of stress and strain, density and mobilised strength of a point.
+//! Invariants of stress and strain, density and mobilised strength of a material point.
 
 use crate::material::Material;
 use crate::points::Points;

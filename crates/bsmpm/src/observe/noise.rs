@@ -1,5 +1,5 @@
-//! Scatter of the stress between points by two measures (T10.9). Methods that average over the grid reduce the first by
-//! construction, but not the second.
+//! Scatter of the stress between material points: about the average on the grid (T10.9), and about a local plane.
+//! Methods that average over the grid reduce only the first by construction.
 
 use crate::error::StepError;
 use crate::exact::Exact;

@@ -1,4 +1,4 @@
-//! Set of material points over which a quantity is evaluated.
+//! Selects the material points over which a history quantity is evaluated.
 
 use crate::points::Points;
 use std::ops::Range;

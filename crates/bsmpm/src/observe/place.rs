@@ -1,4 +1,4 @@
-//! Fields at given positions, by a weighted least-squares plane through the material points nearby (T10.7).
+//! Values at given positions, from a weighted least-squares plane through nearby material points (T10.7).
 
 use crate::exact::Exact;
 use crate::grid::Grid;

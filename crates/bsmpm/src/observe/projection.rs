@@ -1,5 +1,5 @@
-//! Projected pressure for output (Telikicherla and Moutsanidis, 2022), free of pressure modes that cause no nodal
-//! force.
+//! Projected pressure for output (Telikicherla and Moutsanidis, 2022). It contains no pressure modes that cause no
+//! nodal force.
 
 use super::noise::pressure;
 use crate::error::StepError;

@@ -1,4 +1,4 @@
-//! Quadrature defect: the volume of the points in a cell over the volume of the cell, minus one.
+//! Quadrature defect of a cell: the volume of its material points, divided by the cell volume, minus one.
 
 use crate::exact::Exact;
 use crate::grid::occupied::Occupied;

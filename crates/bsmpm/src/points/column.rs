@@ -1,4 +1,4 @@
-//! Arrays of the material points as rows of bytes, for sorting, migration and checkpoints.
+//! Arrays of material points as rows of bytes, for sorting, migration and checkpoints.
 
 use super::packed::{Components, Packed};
 use crate::tensor::Symmetric;

@@ -1,4 +1,4 @@
-//! Storage of tensors without the components that are zero in two dimensions.
+//! Stores tensors without the components that are zero in two dimensions.
 
 use crate::tensor::{Symmetric, Tensor};
 use crate::threads;

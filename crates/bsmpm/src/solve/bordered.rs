@@ -1,4 +1,4 @@
-//! Elimination of the motions of free rigid bodies from the linear system (T7.10), by the Woodbury formula.
+//! Eliminates the motions of free rigid bodies from the linear system (T7.10), by the Woodbury formula.
 
 use crate::boundary::rigid::MOTIONS;
 use crate::error::SolveError;

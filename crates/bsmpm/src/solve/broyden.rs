@@ -1,4 +1,4 @@
-//! Broyden's quasi-Newton direction in product form (T5.12). For shortened steps the update is (T5.13).
+//! Broyden's quasi-Newton direction in product form: (T5.12), and (T5.13) for steps that were shortened.
 
 use crate::parallel::{Halo, dots};
 

@@ -1,5 +1,5 @@
 //! Quasi-Newton direction from all recent secants (T5.10), (T5.11) (Anderson, 1965; Fang and Saad, 2009). Products with
-//! K_0 are avoided by dw_i · K_0 dw_j = dw_i · df_j and dw_i · K_0 w = df_i · w.
+//! the stiffness K_0 are avoided: for w = K_0^-1 f, K_0 dw is the stored change df of the force.
 
 use crate::exact::Exact;
 use crate::parallel::Halo;

@@ -1,4 +1,4 @@
-//! Newton's method with the complete derivative (T5.14), a Krylov solver and a line search, used where secants stall.
+//! Newton's method with the complete derivative (T5.14), a Krylov solver and a line search, where quasi-Newton stalls.
 
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;

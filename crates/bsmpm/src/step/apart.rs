@@ -1,4 +1,4 @@
-//! Nodes that only one material touches, for the force criterion of each material (T5.16).
+//! Finds nodes that only one material touches, for the force criterion of each material (T5.16).
 
 use crate::exact::Exact;
 use crate::grid::Shape;

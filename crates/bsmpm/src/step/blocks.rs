@@ -1,4 +1,4 @@
-//! Assembly that (T5.8) and (T5.14) share: tangent moduli, mass, footings and rigid bodies.
+//! Assembles parts that the matrices (T5.8) and (T5.14) share: tangent moduli, mass, footings and rigid bodies.
 
 use crate::error::SolveError;
 use crate::grid::Shape;

@@ -1,5 +1,4 @@
-//! Stiffness of the F-bar average, the third term of (T5.8), with the sums of (T5.9): sum_h (1/W_h) f_h g_h^T. In K_0,
-//! f_h is a multiple of g_h.
+//! Stiffness of the F-bar average: the third term of (T5.8), with the sums (T5.9).
 
 use crate::grid::{Contributions, Grid, Shape};
 use crate::model::Model;

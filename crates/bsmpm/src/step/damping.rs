@@ -1,5 +1,5 @@
-//! Kelvin-Voigt damping: the viscous stress (T5.6), added to the stress of the law in each iteration. The change c of
-//! b^e by smoothing is excluded.
+//! Kelvin-Voigt damping: adds the viscous stress (T5.6) to the stress of the law in each iteration. Changes of the
+//! elastic tensor b^e by smoothing cause no viscous stress.
 
 use crate::material::{MaterialError, Response};
 use crate::model::Model;

@@ -1,9 +1,9 @@
-//! Extended B-splines (T2.10) to (T2.12): functions of nearly empty cells are tied to functions of full cells. Not tied
-//! are functions at footings, prescribed segments and points in contact with rigid bodies.
+//! Extended B-splines (T2.10) to (T2.12): functions of nearly empty cells are tied to functions of full cells.
+//! Functions at footings, prescribed segments and points in contact with rigid bodies are not tied.
 //!
 //! - [`Extension::extend`] sets the tied displacements.
 //! - [`Extension::reduce`] moves nodal forces of tied functions to the unknowns.
-//! - [`reduced_system`](super::reduced_system) forms the matrices E^T K E.
+//! - [`reduced_system`](super::reduced_system) forms the matrices E^T K E (T2.12).
 //!
 //! A *published* tie is also used by other ranks. All ranks know it and exchange its displacement and force.
 

@@ -1,4 +1,4 @@
-//! Transfer from points to nodes at the start of a step (T2.4), (T2.5), and choice of the unknowns.
+//! Transfer from material points to nodes at the start of a step (T2.4), (T2.5), and choice of the unknowns.
 
 use crate::background::Blocks;
 use crate::boundary::absorbing::Dashpots;

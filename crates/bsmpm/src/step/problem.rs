@@ -1,4 +1,4 @@
-//! Data that are fixed during the iterations of a step.
+//! Data of a step that do not change during its iterations.
 
 use crate::boundary::strip::StripAttachments;
 use crate::grid::Shape;

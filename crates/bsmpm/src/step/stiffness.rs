@@ -1,4 +1,4 @@
-//! Symmetric positive definite stiffness K_0 at the first guess of a step (T5.7) to (T5.9).
+//! Symmetric positive definite stiffness K_0 (T5.7) to (T5.9), assembled at the first guess of a step.
 
 use crate::error::SolveError;
 use crate::grid::shape::{Patch, PatchColumn};

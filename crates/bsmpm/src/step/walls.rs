@@ -1,4 +1,4 @@
-//! Velocity correction of points within a cell of a fixed face, after the step (T6.2).
+//! Corrects velocities of material points within a cell of a fixed face, after the step (T6.2).
 
 use crate::boundary::Support;
 use crate::exact::Exact;

@@ -1,4 +1,4 @@
-//! Pore pressure carried by points: r_u, or excess pressure that is fixed during strength reduction (T8.4).
+//! Pore pressure that material points carry: r_u, or excess pressure that strength reduction keeps constant (T8.4).
 
 use crate::boundary::Support;
 use crate::grid::{Contributions, Shape, transfer};

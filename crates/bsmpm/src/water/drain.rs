@@ -1,4 +1,5 @@
-//! Drains, seepage faces and inflows on surfaces of bodies, part of the water balance and the pressure matrix (T8.13).
+//! Drains, seepage faces and inflows on surfaces of bodies (T8.13). They contribute to water balance and pressure
+//! matrix.
 
 use crate::boundary::anchor::turned;
 use crate::boundary::surface::Attachment;

@@ -1,4 +1,4 @@
-//! Reassembly of the pressure matrix if seepage faces open or close, or with suction.
+//! Reassembles the pressure matrix during a step, if seepage faces open or close, or saturation changes.
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;

@@ -1,7 +1,13 @@
-//! Derivative of the water balance (T8.9) and of the pore pressure in (T8.6), for Newton's method.
+//! Derivative of the water balance (T8.9), and of the pore pressure in (T8.6), for Newton's method.
 //!
-//! With l = (grad v) dF^-1: dJ = J tr l, d(dF^-T grad p) = dF^-T grad dp - l^T dF^-T grad p, d(J dF^-1 w) = J dF^-1 (tr
-//! l w - l w + dw).
+//! A displacement v and a pressure change `δp` change the volume ratio J, the pressure gradient and the Darcy flux w as
+//! follows. dF is the deformation increment of the step, and l = (grad v) dF^-1:
+//!
+//! ```text
+//! δJ = J tr l
+//! δ(dF^-T grad p) = dF^-T grad δp - l^T dF^-T grad p
+//! δ(J dF^-1 w) = J dF^-1 (tr l w - l w + δw)
+//! ```
 
 use crate::grid::transfer::scalars;
 use crate::kinematics::{Gradient, Kinematics};

@@ -1,4 +1,5 @@
-//! Newton direction of displacements and pressures: FGMRES, preconditioned by the fixed-stress split (T8.16).
+//! Newton direction of displacements and pore pressures, by FGMRES with the fixed-stress split (T8.16) as
+//! preconditioner.
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;

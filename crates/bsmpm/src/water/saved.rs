@@ -1,4 +1,4 @@
-//! Update of the pore water of the points after convergence (T8.12), and its report.
+//! Updates the pore water of the material points after convergence (T8.12), and reports it.
 
 use crate::exact::Exact;
 use crate::grid::transfer::scalars;

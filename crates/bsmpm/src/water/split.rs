@@ -1,4 +1,4 @@
-//! Directions by the fixed-stress split (T8.16), from two symmetric positive definite systems.
+//! Solves for displacements and pressures by the fixed-stress split (T8.16): two symmetric positive definite systems.
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;

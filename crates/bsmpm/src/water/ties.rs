@@ -1,4 +1,4 @@
-//! Ties of the excess pressure across C0 lines, where the splines of degree q - 1 are discontinuous.
+//! Ties excess pressures across C0 lines, where splines of one degree below the grid's are discontinuous.
 
 use crate::grid::{Grid, KnotVector};
 use crate::parallel::{Halo, LinearSolver};

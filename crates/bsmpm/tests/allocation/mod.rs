@@ -1,4 +1,4 @@
-//! Memory allocations of an evaluation of the residual, independent of the number of points.
+//! Tests that evaluating the residual allocates memory equally often for any number of points.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::strip::StripAttachments;

@@ -1,4 +1,4 @@
-//! Modified Cam-clay: yield, flow rule, tangent, and laboratory tests with closed forms.
+//! Tests of modified Cam-clay: yield, flow rule, tangent, and laboratory tests with closed forms.
 
 use super::{answer, largest, stretched, turned};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Continuity of the stress between regions of the return mapping, by bisection between trial states.
+//! Tests that the stress is continuous between regions of the return mapping, by bisection between trial states.
 
 use super::{REGIONS, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Laws along loading paths with closed forms.
+//! Tests of laws along loading paths with closed forms.
 
 use super::{hencky, mohr_coulomb, respond};
 use bsmpm::material::Material;

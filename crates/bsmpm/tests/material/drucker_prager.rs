@@ -1,4 +1,4 @@
-//! Drucker-Prager: comparison with Mohr-Coulomb, yield, flow rule and tangent.
+//! Tests of Drucker-Prager: comparison with Mohr-Coulomb, yield, flow rule and tangent.
 
 use super::{largest, mohr_coulomb, respond, stretched, turned};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Isotropy of the laws, tiny and large strains, and nearly equal eigenvalues.
+//! Tests of the laws: isotropy, tiny and large strains, and nearly equal eigenvalues.
 
 use super::{difference, hencky, largest, mohr_coulomb, respond, stretched, turned};
 use crate::random::Random;

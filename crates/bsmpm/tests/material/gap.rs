@@ -1,4 +1,4 @@
-//! Separation of Mohr-Coulomb soil at the apex: a gap must close before the soil resists again.
+//! Tests that Mohr-Coulomb soil that separated at the apex resists again only when its gap has closed.
 
 use super::{mohr_coulomb, respond};
 use bsmpm::material::{Branch, Material, Response};

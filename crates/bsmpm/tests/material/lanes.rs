@@ -1,4 +1,4 @@
-//! Bitwise equality of SIMD and single evaluation of the laws.
+//! Tests that SIMD and single evaluation of the laws agree bitwise.
 
 use super::{REGIONS, hencky, mohr_coulomb, turned};
 use crate::random::Random;

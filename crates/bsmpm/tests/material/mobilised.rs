@@ -1,4 +1,4 @@
-//! Mobilised strength against closed forms of the yield functions.
+//! Tests of mobilised strength against closed forms of the yield functions.
 
 use super::mohr_coulomb;
 use bsmpm::material::{Elastic, Material, VonMises};

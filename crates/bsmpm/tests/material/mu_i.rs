@@ -1,4 +1,4 @@
-//! Dense granular flow μ(I): rate-dependent strength, constant volume and tangent.
+//! Tests of dense granular flow μ(I): rate-dependent strength, constant volume and tangent.
 
 use super::{largest, respond, stretched, turned};
 use crate::random::Random;

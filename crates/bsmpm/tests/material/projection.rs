@@ -1,4 +1,4 @@
-//! Associated returns against a brute-force search for the closest point in the energy norm.
+//! Tests that associated returns find the closest point of the yield surface in the energy norm, by brute-force search.
 
 use super::{Branch, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;

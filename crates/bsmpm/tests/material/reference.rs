@@ -1,4 +1,4 @@
-//! Reference values of an independent prototype, and limits between laws.
+//! Tests of the laws against an independent prototype, and of limits between laws.
 
 use super::{Branch, Material, difference, hencky, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Softening Mohr-Coulomb: yield, tangent, and paths with closed forms.
+//! Tests of softening Mohr-Coulomb: yield, tangent, and paths with closed forms.
 
 use super::{answer, largest, mohr_coulomb, stretched, turned};
 use crate::random::Random;

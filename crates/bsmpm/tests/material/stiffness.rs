@@ -1,4 +1,4 @@
-//! Positive definite stiffness of yielding points, in comparison with the tangent.
+//! Tests of the positive definite stiffness at yielding points against the tangent.
 
 use super::{Branch, REGIONS, hencky, mohr_coulomb, respond};
 use crate::random::Random;

@@ -1,4 +1,5 @@
-//! Spatial tangent against fourth-order central differences of τ((I + h l) b (I + h l)ᵀ), in every region.
+//! Tests of the spatial tangent in every region of the return mapping, against fourth-order central differences of the
+//! stress.
 
 use super::{Branch, REGIONS, hencky, mohr_coulomb, respond, stretched, turned};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Von Mises with linear hardening: yield, flow rule, tangent, and paths with closed forms.
+//! Tests of Von Mises with linear hardening: yield, flow rule, tangent, and paths with closed forms.
 
 use super::{answer, largest, respond, stretched, turned};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Return mapping of Mohr-Coulomb: yield, order of principal stresses, idempotence and flow rule.
+//! Tests of the Mohr-Coulomb return mapping: yield, order of principal stresses, idempotence and flow rule.
 
 use super::{Branch, difference, largest, mohr_coulomb, respond};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Soft background: it resists strain, but not translation or rotation.
+//! Tests that the soft background resists strain, but neither translation nor rotation.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,4 +1,4 @@
-//! Broyden's product form against the dense update of K, equations (T5.12) and (T5.13).
+//! Tests of Broyden's product form (T5.12), (T5.13) against the update of a dense matrix.
 
 use crate::support::random::Random;
 use crate::support::solver::Skyline;

@@ -1,4 +1,4 @@
-//! Volume averages of F-bar, their linearisation, and the filter of the elastic volume strain (T3.7).
+//! Tests of the volume averages of F-bar, their linearisation, and the filter of the elastic volume strain (T3.7).
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};

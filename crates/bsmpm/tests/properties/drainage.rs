@@ -1,4 +1,4 @@
-//! Drains and inflows: water balance, motion of their surface points, and several ranks.
+//! Tests of drains and inflows: water balance, motion of their surface points, and several ranks.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Dense;

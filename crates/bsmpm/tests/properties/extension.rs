@@ -1,4 +1,4 @@
-//! Extended splines: ties preserve linear fields, forces and moments, and bound the condition number.
+//! Tests that ties of extended splines preserve linear fields, forces and moments, and bound the condition number.
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};

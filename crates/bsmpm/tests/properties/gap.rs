@@ -1,4 +1,4 @@
-//! Volume of Mohr-Coulomb soil with closing gaps: `ln J = tr εᵉ + gap` at every point.
+//! Tests that the volume of Mohr-Coulomb soil equals elastic strain plus gap: `ln J = tr εᵉ + gap` at every point.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::boundary::Support;

@@ -1,4 +1,4 @@
-//! Indicators on states with a known answer.
+//! Tests of indicators on states with a known answer.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

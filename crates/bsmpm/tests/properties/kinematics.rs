@@ -1,4 +1,4 @@
-//! Objectivity, F-bar with ratio one, and agreement between geometries.
+//! Tests of objectivity, F-bar with ratio one, and agreement between geometries.
 
 use crate::support::random::Random;
 use crate::support::scene::hencky;

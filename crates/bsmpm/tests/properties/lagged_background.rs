@@ -1,4 +1,4 @@
-//! Background in steady motion: it resists only the change of the displacement.
+//! Tests that in steady motion the background resists only the change of the displacement.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;

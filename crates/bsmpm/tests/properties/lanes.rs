@@ -1,4 +1,4 @@
-//! Bitwise equality of SIMD and single evaluation in a step.
+//! Tests that SIMD and single evaluation of a step agree bitwise.
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis};

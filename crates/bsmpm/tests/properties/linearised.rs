@@ -1,4 +1,4 @@
-//! Product with the complete derivative (T5.14) against differences of the forces.
+//! Tests of the product with the complete derivative (T5.14) against differences of forces.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};

@@ -1,4 +1,4 @@
-//! Property tests. Comments after `measured` give the value on the development machine.
+//! Tests of properties of single modules. Comments after `measured` give the value on the development machine.
 
 mod background;
 mod broyden;

@@ -1,4 +1,4 @@
-//! Multisecant method on linear problems, where it is equivalent to GMRES, and packed vectors.
+//! Tests of the multisecant method on linear problems, where it is equivalent to GMRES, and of packed vectors.
 
 use crate::support::random::Random;
 use crate::support::solver::Skyline;

@@ -1,4 +1,4 @@
-//! History quantities on fields with a known answer.
+//! Tests of history quantities on fields with a known answer.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Contact, Support};

@@ -1,4 +1,4 @@
-//! Run-out front and displacement at a position, on fields with a known answer.
+//! Tests of the run-out front and the displacement at a position, on fields with known values.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::grid::{Grid, KnotVector};

@@ -1,4 +1,4 @@
-//! Arrays of material points: sorting, transfer in messages, and memory.
+//! Tests of the arrays of material points: sorting, transfer in messages, and memory.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,4 +1,4 @@
-//! Motion without deformation: free flight across cells, and rigid rotation.
+//! Tests of motion without deformation: free flight across cells, and rigid rotation.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use crate::support::solver::Skyline;

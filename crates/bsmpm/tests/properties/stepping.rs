@@ -1,4 +1,4 @@
-//! Step size control: halving, growth, and failure without change of the points.
+//! Tests of step size control: halving, growth, and failure without change of the points.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,4 +1,4 @@
-//! Transfers between points and nodes are adjoint to each other, and conserve mass and momentum.
+//! Tests that transfers between points and nodes are adjoint, and conserve mass and momentum.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,4 +1,4 @@
-//! Helpers of the tests and of `bsmpm-trials`: linear solvers without PETSc, small models, and reproducible random
+//! Helpers of the tests in `bsmpm` and `bsmpm-trials`: linear solvers without PETSc, small models, reproducible random
 //! numbers.
 
 #![allow(dead_code)] // each uses its own part

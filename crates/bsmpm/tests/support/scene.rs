@@ -1,4 +1,4 @@
-//! Small models in any dimension: a grid, elastic bodies of whole cells, n^D points per cell.
+//! Small models for tests, in any dimension: a grid, and elastic bodies of whole cells with n^D points per cell.
 
 use super::random::Random;
 use super::solver::Skyline;

@@ -1,4 +1,4 @@
-//! Absorbing faces: plane waves leave, soil at rest stays at rest, and an absorbing base admits ground motion.
+//! Tests that absorbing faces let plane waves leave, keep soil at rest, and admit ground motion at the base.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

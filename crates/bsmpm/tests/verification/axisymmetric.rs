@@ -1,4 +1,4 @@
-//! Axisymmetry: uniform strain, and Lamé's thick-walled cylinder.
+//! Tests of axisymmetry: uniform strain, and Lamé's thick-walled cylinder.
 
 use super::sections::{DENSITY, G, cut};
 use crate::support::scene::{METHODS, Scene, axis, hencky, rms};

@@ -1,4 +1,4 @@
-//! Vibration of an elastic bar, fixed at x = 0: E = 100 Pa, density 1 kg/m³, length 25 m, ν = 0, period 10 s.
+//! Tests of the axial vibration of an elastic bar that is fixed at one end. Its period is 10 s.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;

@@ -1,4 +1,4 @@
-//! Cauchy stress of the points must remain on the yield surface during large plastic flow (T3.8).
+//! Tests that the Cauchy stress remains on the yield surface during large plastic flow (T3.8).
 
 use crate::support::scene::{METHODS, Scene, axis};
 use bsmpm::background::Background;

@@ -1,5 +1,5 @@
-//! Confined column under self-weight. The stress at the initial height Y is -rho0 g (l0 - Y) at any strain, with the
-//! initial length l0.
+//! Tests of a confined column under self-weight. The vertical stress at a material point is the initial weight of the
+//! soil above, at any strain.
 
 use crate::support::scene::{Scene, axis, hencky, rms};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};

@@ -1,4 +1,4 @@
-//! Contact at faces of the grid: closed forms of Coulomb friction, impacts, separation and closing.
+//! Tests of contact at faces of the grid: closed forms of Coulomb friction, impacts, separation and closing.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

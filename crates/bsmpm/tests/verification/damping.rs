@@ -1,4 +1,5 @@
-//! Numerical damping against its theory, and Kelvin-Voigt damping of vibrating, rotating and flowing bodies.
+//! Tests of numerical damping against its theory, and of Kelvin-Voigt damping of vibrating, rotating and flowing
+//! bodies.
 
 use super::bar::{CELLS, PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,4 +1,4 @@
-//! Rebound of two colliding elastic discs (Sulsky, Chen and Schreyer, 1994).
+//! Tests of the rebound of two colliding elastic discs (Sulsky, Chen and Schreyer, 1994).
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::kinematics::PlaneStrain;

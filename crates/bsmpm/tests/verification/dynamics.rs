@@ -1,4 +1,4 @@
-//! Conservation laws and limits of dynamic analysis.
+//! Tests of conservation laws and limits of dynamic analysis.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;

@@ -1,4 +1,4 @@
-//! Energy balance: the residual stays within the tolerance, and terms with known values are reproduced.
+//! Tests of the energy balance: its residual stays within the tolerance, and terms with known values are reproduced.
 
 use super::bar::{PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,4 +1,4 @@
-//! Body whose edge extends into a cell by a tiny amount: stress and condition number.
+//! Tests of stress and condition number of a body whose edge extends slightly into a cell.
 
 use crate::support::scene::{Scene, axis, by_id, hencky};
 use crate::support::solver::Dense;

@@ -1,4 +1,4 @@
-//! Free-field sides: level ground moves like its column, and scattered waves leave.
+//! Tests that free-field sides move level ground like its soil column, and let scattered waves leave.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

@@ -1,4 +1,4 @@
-//! Initial stress: equilibrium, zero initial displacement, and properties that vary with depth.
+//! Tests of initial stress: equilibrium, zero initial displacement, and properties that vary with depth.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

@@ -1,8 +1,12 @@
-//! Inf-sup constant of displacements and averaged volume changes (Chapelle and Bathe, 1993, Comput. Struct. 47,
-//! 537-545).
+//! Tests of the inf-sup constant beta of displacements and averaged volume changes (Chapelle and Bathe, 1993, Comput.
+//! Struct. 47, 537-545).
 //!
-//! beta² is the smallest non-zero eigenvalue of sum_p w (S div u) div v = beta² sum_p w grad u : grad v in a unit
-//! square with fixed edges, with S = A^T W^-1 A w.
+//! The square beta² is the smallest non-zero eigenvalue of the problem below, for all displacements u and v of a unit
+//! square with fixed edges. A point p has the weight w. S is the F-bar average.
+//!
+//! ```text
+//! sum_p w (S div u) div v = beta² sum_p w grad u : grad v with S = A^T W^-1 A w
+//! ```
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

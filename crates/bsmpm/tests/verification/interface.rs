@@ -1,4 +1,4 @@
-//! Stress next to the interface of two layers of different stiffness or density under self-weight.
+//! Tests of the stress next to the interface of two layers with different stiffness or density, under self-weight.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;

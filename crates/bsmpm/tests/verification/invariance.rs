@@ -1,4 +1,5 @@
-//! Invariance of results to mirroring, axes, position and units, and weak dependence on the soft background.
+//! Tests that mirroring, axes, position and units do not change results, and that the soft background changes them
+//! little.
 
 use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
 use bsmpm::background::Background;

@@ -1,4 +1,4 @@
-//! F-bar prevents locking and stress oscillation of a nearly incompressible body.
+//! Tests that F-bar prevents locking and stress oscillation of a nearly incompressible body.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

@@ -1,5 +1,5 @@
 #![doc = include_str!("README.md")]
-//! Comments after `measured` give the value on the development machine.
+//! Tests against closed forms. Comments after `measured` give the development machine's value.
 
 mod absorbing;
 mod axisymmetric;

@@ -1,4 +1,5 @@
-//! Newton's method: quadratic convergence with plasticity and F-bar, and the same equilibrium as quasi-Newton.
+//! Tests that Newton's method converges quadratically with plasticity and F-bar, and finds the equilibrium of
+//! quasi-Newton.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;

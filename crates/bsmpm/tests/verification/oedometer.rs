@@ -1,4 +1,4 @@
-//! Uniform confined compression by a moving face in one step: sigma = M ln(l) / l.
+//! Tests of uniform confined compression to a stretch l in one step: sigma = M ln(l) / l with the modulus M.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;

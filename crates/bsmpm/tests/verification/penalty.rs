@@ -1,4 +1,4 @@
-//! Influence of the penalty of a rigid footing on the collapse pressure.
+//! Tests of the influence of a rigid footing's penalty stiffness on the collapse pressure.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;

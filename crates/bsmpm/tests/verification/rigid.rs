@@ -1,4 +1,4 @@
-//! Rigid bodies: friction, impact, Hertz contact, punches, separation and free motion.
+//! Tests of rigid bodies: friction, impact, Hertz contact, punches, separation and free motion.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::rigid::Outline;

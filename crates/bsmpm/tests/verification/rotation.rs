@@ -1,4 +1,4 @@
-//! Free rotation and motion near supports, with lumped and consistent mass.
+//! Tests of free rotation and motion near supports, with lumped and consistent mass.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

@@ -1,4 +1,4 @@
-//! Section forces and fields at positions: a column under self-weight, and a bent beam.
+//! Tests of section forces and values at positions: a column under self-weight and a bent beam.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

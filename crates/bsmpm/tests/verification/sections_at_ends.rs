@@ -1,4 +1,4 @@
-//! Section forces at and near supports and loads, against statics.
+//! Tests that section forces at supports and loads agree with statics.
 
 use super::sections::{DENSITY, G, cut, weighed};
 use crate::support::scene::{Scene, axis, hencky};

@@ -1,4 +1,4 @@
-//! Steady seepage between drained surfaces that cut cells, in a fixed skeleton, against closed forms.
+//! Tests of steady seepage in a fixed skeleton, between drained surfaces that cut cells, against closed forms.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

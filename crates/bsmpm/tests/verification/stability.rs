@@ -1,4 +1,4 @@
-//! Nearly incompressible column with few points per cell: an unstable discrete equilibrium must be rejected.
+//! Tests that an unstable equilibrium is rejected: a nearly incompressible column with few points per cell.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

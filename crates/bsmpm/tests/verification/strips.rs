@@ -1,4 +1,4 @@
-//! Footings with friction and separation: a dragged block, and a footing that lifts and returns.
+//! Tests of footings with friction and separation: a dragged block, and a footing that lifts and returns.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Contact, ContactReport, Path, Strip, StripContact, StripReport, Support, surface};

@@ -1,4 +1,4 @@
-//! Rigid footings, tractions and point loads: exact stress, global equilibrium, and halved steps.
+//! Tests of rigid footings, tractions and point loads: exact stress, global equilibrium, and halved steps.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::background::Background;

@@ -1,4 +1,4 @@
-//! Saturated column under a sudden load: damped waves of the telegraph equation.
+//! Tests of a saturated column under a sudden load: damped waves of the telegraph equation.
 
 use super::{M, column, run, settlement};
 use bsmpm::energy::{Books, Budget, Stored};

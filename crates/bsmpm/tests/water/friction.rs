@@ -1,4 +1,4 @@
-//! Friction by the effective normal force (T7.2), with excess pore pressure.
+//! Tests that friction follows the effective normal force (T7.2), with excess pore pressure.
 
 use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};

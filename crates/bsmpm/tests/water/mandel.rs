@@ -1,5 +1,5 @@
-//! Mandel's problem: consolidation below a rigid plate with prescribed load, drained at the sides (Mandel, 1953; Cheng
-//! and Detournay, 1988).
+//! Tests of Mandel's problem: consolidation below a loaded rigid plate, drained at the sides (Mandel, 1953; Cheng and
+//! Detournay, 1988).
 
 use super::{Plane, WEIGHT, at, flowing, geometric};
 use crate::support::scene::{axis, hencky};

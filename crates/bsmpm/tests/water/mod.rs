@@ -1,4 +1,4 @@
-//! Coupled flow in a deforming skeleton, against closed forms.
+//! Tests of coupled flow in a deforming skeleton, against closed forms.
 
 mod draining;
 mod dynamic;

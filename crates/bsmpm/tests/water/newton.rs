@@ -1,4 +1,5 @@
-//! Newton's method with coupled flow: derivative, quadratic convergence, and steps for which secants fail.
+//! Tests of Newton's method with coupled flow: derivative, quadratic convergence, and steps for which quasi-Newton
+//! fails.
 
 use super::{DENSITY, Plane, at, flowing};
 use crate::support::random::Random;

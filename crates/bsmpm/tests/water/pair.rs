@@ -1,5 +1,5 @@
-//! Inf-sup constant of displacements and pore pressures on whole and cut cells (Chapelle and Bathe, 1993), and
-//! invariance to rotation.
+//! Tests of the inf-sup constant of displacements and pore pressures on whole and cut cells (Chapelle and Bathe, 1993),
+//! and of invariance to rotation.
 
 use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};

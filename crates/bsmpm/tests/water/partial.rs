@@ -1,4 +1,5 @@
-//! Unsaturated soils: columns against the equation of Richards (1931), run-off of rain, and a dam with a seepage face.
+//! Tests of unsaturated soils: columns against the equation of Richards (1931), run-off of rain, and a dam with a
+//! seepage face.
 
 use super::{Plane, WEIGHT, at, run, through};
 use crate::support::scene::{Scene, axis, hencky};

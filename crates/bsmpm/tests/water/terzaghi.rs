@@ -1,4 +1,4 @@
-//! One-dimensional consolidation of a column under a sudden load (Terzaghi).
+//! Tests of one-dimensional consolidation of a column under a sudden load (Terzaghi).
 
 use super::{M, Plane, column, geometric, run, run_from, settlement};
 use bsmpm::grid::{Grid, KnotVector};

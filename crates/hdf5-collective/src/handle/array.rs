@@ -1,4 +1,4 @@
-//! Arrays of an open file: reading and writing of rows, and checks of type and storage.
+//! Arrays of an open HDF5 file: reads and writes rows, and checks type and storage.
 
 use std::ffi::c_int;
 use std::ptr;

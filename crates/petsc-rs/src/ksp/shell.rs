@@ -1,4 +1,4 @@
-//! Solves with an operator that is given by its matrix-vector product, and with a user-defined preconditioner.
+//! Solves linear systems whose operator is given by its matrix-vector product, with a user-defined preconditioner.
 
 use super::{Ksp, SolveInfo};
 use crate::error::{Error, Result, c_string, check, same_length};

@@ -1,5 +1,5 @@
-//! Outcome of a solve. PETSc's functions return success even if the solver did not converge, so the reason is checked
-//! here.
+//! Decides whether a solve succeeded. PETSc's functions return success even without convergence, so the reason is
+//! checked here.
 
 use std::ptr;
 

@@ -1,4 +1,4 @@
-//! Process environment of the test program: variables, working directory and captured output.
+//! Prepares the process of the test program: environment variables, working directory and captured output.
 
 pub mod classes;
 pub mod shell;

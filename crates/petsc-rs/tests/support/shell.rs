@@ -1,4 +1,4 @@
-//! Tests of user-defined preconditioners in KSP: calls, failures and panics.
+//! Tests of user-defined preconditioners of PETSc's KSP: calls, failures and panics.
 
 use crate::{LOCAL, expect, poisson, text, wavy};
 use petsc_rs::{Error, Ksp, Matrix, PcFailure, Petsc, ShellPc, SolveInfo, Tolerances, Vector};

@@ -1,4 +1,4 @@
-//! Stores factorised columns in groups of four, because memory bandwidth limits triangular solutions.
+//! Stores columns of the Cholesky factor in groups of four, because memory bandwidth limits triangular solutions.
 
 /// Columns that are kept, and worked on, together.
 const GROUP: usize = 4;

@@ -1,5 +1,6 @@
-//! Dense Cholesky factorisation of the first columns of a front, and update of the rest. Matrices are column-major;
-//! only the lower triangle is used. All processors with fused multiply-add (FMA) give the same bits.
+//! Factorises the first columns of a front (a dense matrix of the multifrontal method), and updates the others.
+//! Matrices are column-major; only the lower triangle is used. All processors with fused multiply-add (FMA) give the
+//! same bits.
 
 use nalgebra::{Dyn, MatrixView, MatrixViewMut};
 

@@ -1,4 +1,5 @@
-//! Elimination order by nested dissection (George, 1973; Liu, 1992), with separators of q layers of nodes (q: degree).
+//! Plans the elimination order by nested dissection (George, 1973; Liu, 1992). Separators have q layers of nodes (q:
+//! spline degree).
 
 use super::factor;
 use bsmpm::nodal::Nodal;

@@ -1,4 +1,4 @@
-//! Eliminates nodes that ranks share, from pairs of neighbours up to all ranks.
+//! Eliminates nodes that ranks share: first between two neighbours, at last between all ranks.
 
 use super::factor::{self, Factor, Precision};
 use super::front;

@@ -1,4 +1,4 @@
-//! Tests the direct solver with threads in place of ranks.
+//! Tests of the direct solver, with one thread in place of each rank.
 
 mod system;
 

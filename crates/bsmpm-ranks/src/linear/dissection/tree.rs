@@ -1,4 +1,4 @@
-//! Elimination and solution on several threads, whose number changes no bit.
+//! Eliminates and solves on several threads. The number of threads does not change the results.
 
 use super::factor::{Factor, Room};
 use super::front;

@@ -1,4 +1,4 @@
-//! Transfers nodal values between a grid and a coarser one.
+//! Transfers nodal values between a grid and the next coarser grid of multigrid.
 
 use super::Operator;
 use crate::stencil::Stencil;

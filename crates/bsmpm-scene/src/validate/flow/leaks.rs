@@ -1,4 +1,4 @@
-//! Warns of interfaces and thin walls whose pore pressures the grid cannot resolve.
+//! Warns of interfaces and thin walls across which the grid cannot resolve the change of pore pressure.
 
 use crate::case::{Body, Case, Flow, Quantity};
 use crate::grid::GridAxis;

@@ -1,4 +1,4 @@
-//! C0 lines at ends of footings and loads, and at edges of rigid bodies.
+//! Places C0 lines (repeated breakpoints) at ends of footings and loads, and at edges of rigid bodies.
 
 use super::{BESIDE, BEYOND, FoundLine, NAMES, grid_line};
 use crate::case::{Case, LoadedLine, MotionPath, Rigid, RigidShape, RigidSolid, Site};

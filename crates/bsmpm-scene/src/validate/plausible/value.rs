@@ -1,4 +1,4 @@
-//! Warns of values that appear to be in another unit.
+//! Warns of single values that appear to be given in another unit.
 
 use super::Scale;
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! Tests hostile or huge input (rows I19 to I23, F37, S1 to S3).
+//! Tests that hostile or huge input is refused or has no effect.
 
 use crate::support::Scratch;
 use crate::support::cases::{COLUMN, changed};

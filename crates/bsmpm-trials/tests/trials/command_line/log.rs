@@ -1,4 +1,4 @@
-//! Tests the log at a terminal, in a batch job and as JSON.
+//! Tests of the log at a terminal, in a batch job and as JSON.
 
 use crate::support::cases::{COLUMN, endless};
 use crate::support::results::manifest;

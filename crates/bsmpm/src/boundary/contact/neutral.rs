@@ -1,4 +1,5 @@
-//! Neutral nodes. If all nodes of a face slide outwards, the node where slip changes direction is set to stick.
+//! Chooses nodes that stick. If all nodes of a contact face slide outwards, the node where slip changes direction
+//! sticks.
 
 use super::Contacts;
 use crate::boundary::coulomb::Status;

@@ -1,5 +1,5 @@
-//! Follower loads: pressures on the deformed surface (T6.9), evaluated in each iteration, without a derivative in the
-//! stiffness.
+//! Follower loads: pressures on the deformed surface (T6.9), evaluated in each iteration. The stiffness does not
+//! contain their derivative.
 
 use super::Load;
 use crate::boundary::anchor::Anchored;

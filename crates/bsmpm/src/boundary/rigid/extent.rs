@@ -1,4 +1,4 @@
-//! Factor e_p of the reach of material points near a rigid body (T7.7), set at the start and after each step.
+//! Factor e_p in (T7.7): it scales the distance at which material point p touches a rigid body.
 
 use super::ROUNDING;
 use super::RigidContacts;

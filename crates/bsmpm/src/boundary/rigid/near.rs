@@ -1,4 +1,5 @@
-//! Contact detection: points near a rigid body, gaps (T7.7), contact positions (T7.8) and stiffness (T7.9).
+//! Contact detection: material points near a rigid body, their gaps (T7.7), contact positions (T7.8) and stiffness
+//! (T7.9).
 
 use super::motion::BodyInStep;
 use super::point::{ContactStatus, RigidPoint, along, tangents};

@@ -1,5 +1,5 @@
-//! Neutral points. If all points below a free rigid body slide outwards (quasi-static), the one with the least slip is
-//! set to stick.
+//! Chooses material points that stick to a free rigid body. If all points below it slide outwards (quasi-static), the
+//! one with the least slip sticks.
 
 use super::body::MOTIONS;
 use super::point::{ContactStatus, RigidPoint};

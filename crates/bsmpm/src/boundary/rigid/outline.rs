@@ -1,4 +1,4 @@
-//! Outlines of rigid bodies: distance and normal at a position, area, centroid and moments.
+//! Outlines of rigid bodies: distance and normal from a position, area, centroid and moments.
 
 use super::terrain::Terrain;
 use crate::tensor::Vector;

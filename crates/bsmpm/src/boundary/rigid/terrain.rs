@@ -1,4 +1,4 @@
-//! Rigid terrain in three dimensions: bilinear heights between the posts of a raster.
+//! Rigid terrain in 3-D: a raster of heights with bilinear interpolation.
 
 use crate::tensor::Vector;
 

@@ -1,4 +1,4 @@
-//! A surface point of a footing during a step: traction (T6.5) and contribution to the report.
+//! A surface point of a footing during a step: traction (T6.5) and contribution to the footing's force.
 
 use super::ContactState;
 use crate::boundary::coulomb::{ContactReport, Status};

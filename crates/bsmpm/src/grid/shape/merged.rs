@@ -1,5 +1,5 @@
-//! Splines of degree q - 1 for the average of `subgrid-f-bar` (T3.4): on pairs of cells inside a body, on single cells
-//! at its edges. All functions sum to one.
+//! Splines of one degree below the grid's, for the average of `subgrid-f-bar` (T3.4). They are defined on pairs of
+//! cells inside a body, and on single cells at its edges.
 
 use super::Shape;
 use crate::grid::paired::Paired;

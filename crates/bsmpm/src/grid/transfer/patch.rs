@@ -1,4 +1,4 @@
-//! Transfers with gradients for the points of one cell, compiled for each instruction set.
+//! Transfers and gradients for the material points of one cell, compiled for each instruction set.
 
 use super::PatchBlock;
 use crate::grid::shape::PointSupport;

@@ -1,4 +1,4 @@
-//! Transfers of pore pressure and its gradient on splines of degree q - 1, for q above 1.
+//! Transfers of pore pressure and its gradient on splines of one degree below the grid's.
 
 use super::{MOST_NODES, PatchBlock, at_points, gather, scatter};
 use crate::grid::shape::with_width;
