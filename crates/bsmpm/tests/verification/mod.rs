@@ -1,4 +1,3 @@
-#![doc = include_str!("README.md")]
 //! Tests against closed forms. Comments after `measured` give the development machine's value.
 
 mod absorbing;
