@@ -314,8 +314,8 @@ pub fn pictures(text: &str) -> Vec<Picture> {
     found
 }
 
-/// The text with the caption of each picture below it, as the built manual shows it: a picture that is a paragraph is followed
-/// by its caption in a paragraph of the class `caption`.
+/// The text with the caption of each picture below it, as the built manual shows it: a picture that is a paragraph is
+/// followed by its caption in a paragraph of the class `caption`.
 pub fn captioned(text: &str) -> String {
     let mut captioned = String::new();
     let mut is_code = false;

@@ -4,7 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A heading of the page with its files, relative to `crates/`: a folder ends with `/`, and takes what no other one has.
+/// A heading of the page with its files, relative to `crates/`: a folder ends with `/`, and takes what no other one
+/// has.
 const THEMES: [(&str, &[&str]); 9] = [
     ("Constitutive laws", &["bsmpm/tests/material/"]),
     (

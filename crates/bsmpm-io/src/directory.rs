@@ -1,4 +1,5 @@
-//! The output directory of a run. The program deletes only files that `run.json` in this directory names.
+//! The output directory of a run. The program deletes only files that are listed in the `run.json` of this
+//! directory.
 
 use std::fs::{self, Metadata};
 use std::io::{self, ErrorKind};

@@ -309,8 +309,8 @@ pub fn frame_times(case: &Case) -> Vec<f64> {
 }
 
 /// Materials of one stiffness: what an average over the grid may mix. One that depends on the height or the stress is
-/// alike to itself; under consistent and sub-grid F-bar one that dilates is not alike to one that does not, as their forces are
-/// formed in other ways.
+/// alike to itself; under consistent and sub-grid F-bar one that dilates is not alike to one that does not, as their
+/// forces are formed in other ways.
 pub fn groups(case: &Case) -> Groups {
     groups_of(case, &case.materials)
 }

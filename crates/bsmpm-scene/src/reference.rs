@@ -29,10 +29,11 @@ pub fn reference() -> String {
     page.line("## Rows from a file\n");
     page.paragraph(
         "Instead of rows, `{ file = \"record.csv\" }` names a text file in the folder of the case. Each line is a row. \
-         Commas, semicolons, tabs or spaces separate its values, and `#` begins a comment. A heading may give \
-         units as `t [s], ux [mm]`, `t (s), ux (mm)` or `t / s, ux / mm`. A column without a unit in its heading is in SI units. With `along = \"x\"` (or \"y\", in 3-D \"z\") the file has two columns, a time and a value \
-         along this axis; the other components are zero. The rows become part of the case: `run.json` stores them, and \
-         a restart does not need the file. `--set` and the parameters of a sweep accept rows only.",
+         Commas, semicolons, tabs or spaces separate its values, and `#` begins a comment. A heading may give units as \
+         `t [s], ux [mm]`, `t (s), ux (mm)` or `t / s, ux / mm`. A column without a unit in its heading is in SI units. \
+         With `along = \"x\"` (or \"y\", in 3-D \"z\") the file has two columns, a time and a value along this axis; the \
+         other components are zero. The rows become part of the case: `run.json` stores them, and a restart does not \
+         need the file. `--set` and the parameters of a sweep accept rows only.",
     );
     page.shared_words();
     page.histories();

@@ -18,7 +18,8 @@ pub enum Quadrature {
     Fitted,
 }
 
-/// Passes of the iteration: 0.001 of what is missing is left. With 10 it is 0.02, which dominates the error in fine grids.
+/// Passes of the iteration: 0.001 of what is missing is left. With 10 it is 0.02, which dominates the error in fine
+/// grids.
 const PASSES: usize = 16;
 /// Least and largest factor of a volume: a function that few points see might ask for others.
 const FACTORS: [f64; 2] = [0.1, 10.0];

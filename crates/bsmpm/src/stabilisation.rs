@@ -14,7 +14,8 @@ pub enum Stabilisation {
     /// The total J averaged: ratio = R(t+dt)/R(t) with R = S(J)/J, 1 at the start; the baseline of the paper, a reading
     /// of Zhao, Jiang and Choo (2022).
     FBarZhao,
-    /// The paper's method: dJ averaged, and b^e averaged after every step (T3.5). Results depend on the number of steps.
+    /// The paper's method: dJ averaged, and b^e averaged after every step (T3.5). Results depend on the number of
+    /// steps.
     ModifiedFBar,
     /// ratio = S1(dJ)/dJ (T3.4), S1 with the splines of degree q - 1, and a filter of the elastic dilation (T3.7) that
     /// acts with plastic flow only: results converge in the step size. In dilatant material its force is the adjoint

@@ -127,7 +127,7 @@ words! { Decay {
 words! { Match {
     Outer = "outer": "In triaxial compression. Elsewhere it is stronger than Mohr-Coulomb.",
     Inner = "inner": "In triaxial extension. In compression it is weaker than Mohr-Coulomb.",
-    PlaneStrain = "plane-strain": "In plane strain with associated flow (dilation_angle = friction_angle). With less dilation it is weaker.",
+    PlaneStrain = "plane-strain": "In plane strain with associated flow. With less dilation it is weaker than Mohr-Coulomb.",
 } }
 
 pub(crate) static MATERIAL: Table = Table {

@@ -9,12 +9,12 @@ use bsmpm::water::flow::PermeabilityLaw;
 
 words! { MassMatrix {
     Lumped = "lumped": "Lumped (diagonal) mass matrix, as in the paper.",
-    Consistent = "consistent": "Consistent mass matrix, blended with a small part of the lumped one.",
+    Consistent = "consistent": "Consistent mass matrix (95 %), blended with the lumped one (5 %).",
 } }
 
 words! { WallVelocity {
     Own = "own": "Material points keep their velocity, as in the paper.",
-    Relaxed = "relaxed": "The velocity of material points approaches that of their displacement over a distance of a quarter of a cell.",
+    Relaxed = "relaxed": "While a point moves by a quarter of a cell, its velocity relaxes to its displacement per time.",
 } }
 
 words! { Stabilisation {
@@ -22,7 +22,7 @@ words! { Stabilisation {
     FBar = "f-bar": "F-bar method: volume changes of the step are averaged.",
     FBarZhao = "f-bar-zhao": "F-bar method of Zhao: total volume changes are averaged.",
     ModifiedFBar = "modified-f-bar": "Modified F-bar method of the paper: after every step the elastic strains are averaged as well.",
-    ConsistentFBar = "consistent-f-bar": "F-bar method whose averages use B-splines of the next lower degree, with forces that are consistent with the stress.",
+    ConsistentFBar = "consistent-f-bar": "F-bar method with averages over B-splines of the next lower degree and consistent forces.",
     SubgridFBar = "subgrid-f-bar": "Consistent F-bar method with averages over pairs of cells.",
 } }
 

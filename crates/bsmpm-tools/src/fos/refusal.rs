@@ -8,8 +8,8 @@ use bsmpm_scene::{Case, MotionPath, NamedMaterial, Rigid, Shares};
 /// residuals of 1e-1, 2 % with 1e-2, and no difference from 1e-3 on.
 const LOOSEST: f64 = 1e-3;
 
-/// Why a case has no factor of safety, or none that could be trusted, at its end or at the end of the stage that ends at the
-/// time `until`: texts with their codes, none if `bsmpm fos` accepts the case.
+/// Why a case has no factor of safety, or none that could be trusted, at its end or at the end of the stage that ends
+/// at the time `until`: texts with their codes, none if `bsmpm fos` accepts the case.
 pub fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
     let materials = followed(case, until);
     let any = |holds: fn(&Material) -> bool| materials.iter().any(|named| holds(&named.material));

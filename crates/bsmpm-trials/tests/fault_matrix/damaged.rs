@@ -1,4 +1,5 @@
-//! Tests that damaged or foreign checkpoints are refused if named, and skipped by `--restart auto`.
+//! Tests that the program refuses a checkpoint that is damaged or of another case if the user names it, and that
+//! `--restart auto` skips it.
 
 use crate::ground::{Ground, Trial, spread};
 use crate::support::{example, processes};

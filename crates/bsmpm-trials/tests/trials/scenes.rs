@@ -255,8 +255,8 @@ fn a_weaker_slope_moves_more() {
         scratch.mpirun(2, &[&arguments[..], &paper[..]].concat()).expect(0);
         *history(&scratch.path("slope.out")).get("E_delta_over_gamma_H2").unwrap().last().unwrap()
     });
-    // Measured before: 0.3874 and 0.589 with another quasi-Newton method, and without extended splines. With them 0.571, as
-    // the surface's cells are a little stiffer.
+    // Measured before: 0.3874 and 0.589 with another quasi-Newton method, and without extended splines. With them
+    // 0.571, as the surface's cells are a little stiffer.
     assert!((moved[0] - 0.387).abs() < 0.002 && (moved[1] - 0.571).abs() < 0.01, "{moved:?}");
 }
 

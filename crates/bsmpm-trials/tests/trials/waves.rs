@@ -115,7 +115,8 @@ fn with_as_many_cells_as_the_warning_asks_for_the_speed_is_within_2_per_cent() {
     }
 }
 
-/// The error of the speed is of second order in the cell: theta^2/4 with the lumped mass and quadratic splines; this prints the table.
+/// The error of the speed is of second order in the cell: theta^2/4 with the lumped mass and quadratic splines; this
+/// prints the table.
 #[test]
 fn the_speed_converges_with_the_square_of_the_cell() {
     for mass in ["lumped", "consistent"] {

@@ -8,8 +8,8 @@ use crate::kinematics::Gradient;
 use crate::tensor::Tensor;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Share of the elastic stiffness. Less takes fewer iterations where steps are small, and more where they are large (decisions of the
-/// manual, 2026-11-21).
+/// Share of the elastic stiffness. Less takes fewer iterations where steps are small, and more where they are large
+/// (decisions of the manual, 2026-11-21).
 const ELASTIC: f64 = 0.1;
 /// Plastic strain of a response below which it counts as elastic: what rests on the yield surface is beyond it by
 /// round-off or not, and the stiffness should not depend on that.

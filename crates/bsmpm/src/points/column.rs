@@ -1,4 +1,5 @@
-//! Arrays of material points as rows of bytes, for sorting, migration and checkpoints.
+//! Treats each array of the material points (one per quantity, one row per point) as rows of bytes, so that sorting,
+//! migration between ranks and checkpoints need not know the type of the quantity.
 
 use super::packed::{Components, Packed};
 use crate::tensor::Symmetric;

@@ -13,8 +13,8 @@ use crate::tensor::{Symmetric, Tensor};
 /// 7.5 degrees on.
 const DILATANT: f64 = 0.105;
 
-/// Whether a material dilates so much that the adjoint force is used. Materials of which one does and one does not belong
-/// to different [`Groups`](crate::stabilisation::Groups).
+/// Whether a material dilates so much that the adjoint force is used. Materials of which one does and one does not
+/// belong to different [`Groups`](crate::stabilisation::Groups).
 pub fn is_dilatant(material: &Material) -> bool {
     material.dilation() > DILATANT
 }

@@ -1,4 +1,5 @@
-//! Tests of the laws against an independent prototype, and of limits between laws.
+//! Tests of the constitutive laws against an independent implementation, and of limit cases in which two laws must
+//! agree.
 
 use super::{Branch, Material, difference, hencky, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;

@@ -248,7 +248,8 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
 }
 
 /// Cells across which a band of shear does the work of its softening. Splines of order 2 make no narrower slip than a
-/// hat of strain over two cells, all of which softens sooner or later; measured with one free band (`scripts/validate`).
+/// hat of strain over two cells, all of which softens sooner or later; measured with one free band
+/// (`scripts/validate`).
 pub(super) const CELLS_OF_BAND: f64 = 2.0;
 
 /// The plastic strain of cells for that of a shear band, so that a band does the same work in any (crack band: Bažant
