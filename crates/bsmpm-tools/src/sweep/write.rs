@@ -151,7 +151,9 @@ mod tests {
         let written = text(COLUMN, &set).unwrap();
         let case = Case::from_text("case.toml", COLUMN, &set).unwrap();
         assert_eq!(differences(&case.text, &written).unwrap(), [], "{written}");
-        assert!(written.contains("# The coarse form of") && written.contains("# the paper's: \"modified-f-bar\""));
+        assert!(
+            written.contains("# A column of aluminium rods") && written.contains("# the paper uses \"modified-f-bar\"")
+        );
         assert!(written.contains("cell   = \"5 mm\"\ndegree") && !written.contains("dt "), "{written}");
     }
 
