@@ -156,7 +156,7 @@ fn the_cheapest_setting_is_written_back_as_a_case_that_passes() {
     // With the case as it is, which is one of the first axis's values, too: two more.
     assert_eq!(states(&found).len(), 3, "{found}");
     let text = fs::read_to_string(&best).unwrap();
-    assert!(text.contains("# A column of rods, 0.2 m wide"), "{text}");
+    assert!(text.contains("# A column of aluminium rods, 0.2 m wide"), "{text}");
     let checked = Command::new(program()).arg(&best).arg("--check").output().unwrap();
     assert!(checked.status.success(), "{checked:?}");
 }
