@@ -6,6 +6,7 @@ mod element;
 mod flow;
 mod laws;
 mod loads;
+mod material;
 mod output;
 mod rigid;
 mod stage;
@@ -16,7 +17,8 @@ pub(crate) use answers::answer;
 
 pub use crate::unit::Dimension;
 pub use crate::words::Words;
-pub(crate) use laws::{LawName, MATERIAL};
+pub(crate) use laws::LawName;
+pub(crate) use material::MATERIAL;
 pub use tables::ROOT;
 
 use std::fmt;

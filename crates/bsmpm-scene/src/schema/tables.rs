@@ -3,7 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required, Retired};
 use super::{
-    Dimension as In, Kind, Range, Table, body, element, flow, key, laws, loads, one_of, output, rigid, stage, water,
+    Dimension as In, Kind, Range, Table, body, element, flow, key, loads, material, one_of, output, rigid, stage, water,
 };
 use crate::words::{
     Accuracy, AnalysisType, BACKGROUND_CELLS, BACKGROUND_KIND, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear,
@@ -34,7 +34,7 @@ pub static ROOT: Table = Table {
         .example(r#""draft""#),
         key("analysis", Kind::Table(&ANALYSIS), Required, "Type of the analysis and its duration."),
         key("grid", Kind::Table(&GRID), Required, "The background grid."),
-        key("material", Named(&laws::MATERIAL), Required, "Materials, each with a name."),
+        key("material", Named(&material::MATERIAL), Required, "Materials, each with a name."),
         key("body", Tables(&body::BODY), Required, "Bodies of soil, which are filled with material points."),
         key("gravity", Kind::Table(&GRAVITY), Optional, "Body force. Without this table there is none."),
         key("water", Kind::Table(&water::WATER), Optional, "Water in the ground. Without this table there is none."),

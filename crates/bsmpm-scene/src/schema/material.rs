@@ -1,0 +1,445 @@
+//! Schema of a material, its retention curve and its damping.
+
+use super::Kind::{self, *};
+use super::Presence::{Default, Optional, Required};
+use super::laws::LawName;
+use super::{Dimension as In, Range, Table, key, loads, one_of};
+use crate::words::{Drainage, Word};
+use bsmpm::material::{Decay, Match, Separation};
+use bsmpm::water::flow::PermeabilityLaw;
+use std::ops::Bound::{Excluded, Included, Unbounded};
+
+pub(crate) static MATERIAL: Table = Table {
+    header: "[material.NAME]",
+    doc: "A material with a name. Its keys depend on its model: [how to choose a law](../how-to/choose-law.md).",
+    keys: &[
+        key("model", Choice(LawName::WORDS), Required, "Constitutive law.").example(r#""mohr-coulomb""#),
+        key(
+            "young",
+            Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
+            Required,
+            "Young's modulus. For modified-cam-clay it only sets the constant shear modulus G = E / (2 (1 + ν)). \
+             Take E = 3 (1 - 2ν) p'/κ* at a typical pressure p'.",
+        )
+        .symbol("E")
+        .example(r#""30 MPa""#),
+        key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio.").symbol("ν").example("0.3"),
+        key(
+            "friction_angle",
+            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Optional,
+            "Friction angle. Required by mohr-coulomb, drucker-prager and mohr-coulomb-softening, where it is the \
+             value before any plastic strain.",
+        )
+        .symbol("φ'")
+        .example("30.0")
+        .renamed_from(&["friction"]),
+        key(
+            "dilation_angle",
+            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Optional,
+            "Dilation angle, at most the friction angle. Without this key it is 0.",
+        )
+        .symbol("ψ")
+        .example("0.0")
+        .renamed_from(&["dilation"]),
+        key(
+            "cohesion",
+            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "Cohesion. With model \"tresca\" and \"sensitive-clay\" it is the undrained shear strength. Required by \
+             all models but elastic, von-mises, modified-cam-clay and mu-i, which have none.",
+        )
+        .symbol("c', s_u")
+        .example(r#""10 kPa""#),
+        key(
+            "residual_friction_angle",
+            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Optional,
+            "Friction angle after softening_strain. Required by mohr-coulomb-softening.",
+        )
+        .symbol("φ'_r")
+        .example("25.0")
+        .renamed_from(&["residual_friction"]),
+        key(
+            "residual_dilation_angle",
+            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Optional,
+            "Dilation angle after softening_strain, at most residual_friction_angle. Without this key it is 0.",
+        )
+        .symbol("ψ_r")
+        .example("0.0")
+        .renamed_from(&["residual_dilation"]),
+        key(
+            "residual_cohesion",
+            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "Cohesion after softening_strain. Required by mohr-coulomb-softening.",
+        )
+        .symbol("c'_r")
+        .example(r#""1 kPa""#),
+        key(
+            "softening_strain",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "Plastic strain at which the strength has reached its residual value, or 95 % of the loss with \
+             exponential softening. For mohr-coulomb-softening it is κ, the sum of sqrt(2/3) times the norm of the \
+             deviatoric plastic strain increments. For sensitive-clay it is ξ = sqrt(3) κ at 95 % of the softening. \
+             Required by both.",
+        )
+        .symbol("κ_r, ξ95")
+        .example("0.2"),
+        key(
+            "sensitivity",
+            Quantity(In::Number, Range::of(Included(1.0), Unbounded)),
+            Optional,
+            "Ratio of the cohesion to that of the remoulded clay. Required by sensitive-clay.",
+        )
+        .symbol("S_t")
+        .example("10.0"),
+        key(
+            "rate_parameter",
+            Quantity(In::Number, Range::NOT_NEGATIVE),
+            Optional,
+            "Relative growth of the cohesion per decade of the plastic shear strain rate, for sensitive-clay in \
+             dynamic and quasi-static-rate analyses. Without this key the cohesion does not depend on the rate.",
+        )
+        .symbol("μ")
+        .example("0.1"),
+        key(
+            "reference_rate",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "Strain rate of the laboratory test that gave the cohesion, in 1/s. Required with rate_parameter.",
+        )
+        .symbol("ξ̇_ref")
+        .example("1e-5"),
+        key(
+            "softening",
+            Choice(Decay::WORDS),
+            Optional,
+            "How the strength of mohr-coulomb-softening falls with the plastic strain. Without this key it falls \
+             linearly. The strength of sensitive-clay always falls exponentially.",
+        )
+        .example(r#""exponential""#),
+        key(
+            "band_width",
+            Quantity(In::Length, Range::POSITIVE),
+            Optional,
+            "Thickness of the shear band to which softening_strain belongs. Cells of size h then soften at the \
+             strain softening_strain times band_width / (2 h), so that the dissipated energy does not depend on the \
+             cells (crack band). All cells must have the same size. Without this key the results depend on the cells.",
+        )
+        .example(r#""0.02 m""#),
+        key(
+            "kappa_star",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "Slope of the unloading line in ln v over ln p'. The bulk modulus is p'/κ*, and the shear modulus \
+             follows from young and poisson. Required by modified-cam-clay, unless it has kappa and void_ratio.",
+        )
+        .symbol("κ*")
+        .example("0.02"),
+        key(
+            "lambda_star",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "Slope of the normal compression line in ln v over ln p', larger than kappa_star. Required by \
+             modified-cam-clay, unless it has lambda and void_ratio.",
+        )
+        .symbol("λ*")
+        .example("0.1"),
+        key(
+            "kappa",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "Slope of the unloading line in v over ln p', instead of kappa_star: κ* = κ / (1 + e0).",
+        )
+        .symbol("κ")
+        .example("0.05"),
+        key(
+            "lambda",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "Slope of the normal compression line in v over ln p', instead of lambda_star: λ* = λ / (1 + e0).",
+        )
+        .symbol("λ")
+        .example("0.25"),
+        key(
+            "void_ratio",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "Void ratio at the start. Required with kappa and lambda.",
+        )
+        .symbol("e0")
+        .example("1.2"),
+        key(
+            "critical_state_ratio",
+            Quantity(In::Number, BELOW_3),
+            Optional,
+            "Ratio q/p' at the critical state, 6 sin(φ')/(3 - sin(φ')) in triaxial compression. It is the same in \
+             all directions of shear. Required by modified-cam-clay.",
+        )
+        .symbol("M")
+        .example("1.2")
+        .renamed_from(&["critical_ratio"]),
+        key(
+            "preconsolidation",
+            Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "Mean effective stress at the tip of the yield surface at the start. modified-cam-clay requires this or \
+             ocr.",
+        )
+        .symbol("p'_c")
+        .example(r#""100 kPa""#),
+        key(
+            "ocr",
+            Quantity(In::Number, Range::of(Included(1.0), Unbounded)),
+            Optional,
+            "Overconsolidation ratio. For modified-cam-clay it is the size of the yield surface over that through \
+             the stress at the start. For laws with a friction angle it gives k0 = (1 - sin(φ')) OCR^sin(φ').",
+        )
+        .symbol("OCR")
+        .example("1.5"),
+        key(
+            "mu_s",
+            Quantity(In::Number, BELOW_3),
+            Optional,
+            "Friction coefficient of slow shear. In plane strain it is the sine of the friction angle. Required by \
+             mu-i.",
+        )
+        .symbol("μ_s")
+        .example("0.38"),
+        key(
+            "mu_2",
+            Quantity(In::Number, BELOW_3),
+            Optional,
+            "Friction coefficient of fast shear, at least mu_s. Required by mu-i.",
+        )
+        .symbol("μ_2")
+        .example("0.64"),
+        key(
+            "inertial_number",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "Inertial number at which half of μ_2 - μ_s is reached. The inertial number is the shear strain rate \
+             times grain_diameter times sqrt(grain_density / p). Required by mu-i.",
+        )
+        .symbol("I_0")
+        .example("0.3"),
+        key(
+            "grain_diameter",
+            Quantity(In::Length, Range::POSITIVE),
+            Optional,
+            "Diameter of the grains. Required by mu-i.",
+        )
+        .symbol("d")
+        .example(r#""1 mm""#),
+        key(
+            "grain_density",
+            Quantity(In::Density, Range::POSITIVE),
+            Optional,
+            "Density of the grains. Required by mu-i.",
+        )
+        .symbol("ρ_s")
+        .example("2500.0"),
+        key(
+            "fit",
+            Choice(Match::WORDS),
+            Optional,
+            "Where the cone of drucker-prager meets the pyramid of mohr-coulomb. Without this key it is \
+             \"plane-strain\". The program warns if the strength then differs from that of mohr-coulomb.",
+        )
+        .example(r#""plane-strain""#)
+        .renamed_from(&["match"]),
+        key(
+            "yield_stress",
+            Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "Uniaxial yield stress. Required by von-mises.",
+        )
+        .symbol("σ_y")
+        .example(r#""200 kPa""#),
+        key(
+            "hardening",
+            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "Growth of the yield stress per plastic strain, for von-mises. Without this key it is 0.",
+        )
+        .symbol("H")
+        .example(r#""1 MPa""#),
+        key(
+            "separation",
+            Choice(Separation::WORDS),
+            Optional,
+            "Volume change at the apex of mohr-coulomb: plastic, or a gap that must close before the material \
+             carries pressure again. Without this key it is plastic.",
+        )
+        .example(r#""gap""#),
+        key(
+            "unit_weight",
+            Quantity(In::UnitWeight, Range::POSITIVE),
+            Optional,
+            "Unit weight. The density is the unit weight divided by 9.81 m/s2.",
+        )
+        .symbol("γ")
+        .example(r#""20 kN/m3""#),
+        key(
+            "density",
+            Quantity(In::Density, Range::POSITIVE),
+            Optional,
+            "Density. A material without density and unit weight is weightless, which is an error in dynamic \
+             analyses.",
+        )
+        .symbol("ρ")
+        .example("2000.0"),
+        key(
+            "saturated_unit_weight",
+            Quantity(In::UnitWeight, Range::POSITIVE),
+            Optional,
+            "Unit weight below the water table at the start. Without this key it is that above the water table.",
+        )
+        .symbol("γ_sat")
+        .example(r#""21 kN/m3""#),
+        key(
+            "ru",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "Pore pressure ratio: pore pressure over the weight of the soil vertically above, at the start, instead \
+             of [water]. The material points keep this pressure.",
+        )
+        .symbol("r_u")
+        .example("0.25"),
+        key(
+            "k0",
+            Quantity(In::Number, loads::COEFFICIENT),
+            Optional,
+            "Ratio of horizontal to vertical effective stress at the start.",
+        )
+        .symbol("K0")
+        .example("0.5"),
+        key(
+            "drainage",
+            Choice(Drainage::WORDS),
+            Optional,
+            "Drainage of this material in consolidation and dynamic analyses. Without this key it is that of \
+             [water].",
+        )
+        .example(r#""coupled""#),
+        key(
+            "porosity",
+            Quantity(In::Number, BELOW_1),
+            Optional,
+            "Porosity at the start. Required with drainage \"coupled\" and \"undrained\".",
+        )
+        .symbol("n")
+        .example("0.4"),
+        key(
+            "permeability",
+            Either(In::Seepage, Range::POSITIVE),
+            Optional,
+            "Hydraulic conductivity, or one along each axis. Required with drainage \"coupled\".",
+        )
+        .symbol("k")
+        .example(r#""1e-8 m/s""#),
+        key(
+            "permeability_law",
+            Choice(PermeabilityLaw::WORDS),
+            Optional,
+            "How the permeability depends on the porosity. Without this key it is constant.",
+        )
+        .example(r#""kozeny-carman""#),
+        key(
+            "retention",
+            Kind::Table(&RETENTION),
+            Optional,
+            "Soil-water retention curve of a coupled material. Without this table the pores stay saturated.",
+        ),
+        key(
+            "damping",
+            Kind::Table(&DAMPING),
+            Optional,
+            "Viscous damping in dynamic analyses. Without this table there is none.",
+        ),
+    ],
+    exclusive: &[
+        one_of(&["unit_weight", "density"], false),
+        one_of(&["preconsolidation", "ocr"], false),
+        one_of(&["kappa_star", "kappa"], false),
+        one_of(&["lambda_star", "lambda"], false),
+    ],
+};
+
+static RETENTION: Table = Table {
+    header: "[material.NAME] retention",
+    doc: "Soil-water retention curve with the effective stress of Bishop. It is that of van Genuchten, with the \
+          effective saturation (1 + (alpha s)^n)^(1/n - 1) at the suction head s and the permeability of Mualem, or a \
+          measured curve.",
+    keys: &[
+        key(
+            "alpha",
+            Quantity(In::Number, Range::POSITIVE),
+            Optional,
+            "Van Genuchten's alpha in 1/m, about the inverse of the suction head at which air enters.",
+        )
+        .symbol("α")
+        .example("2.0"),
+        key(
+            "n",
+            Quantity(In::Number, PORES),
+            Optional,
+            "Van Genuchten's n. The larger it is, the more uniform the pores are. Required with alpha.",
+        )
+        .symbol("n")
+        .example("1.6"),
+        key(
+            "curve",
+            Rows(&[(In::Length, Range::NOT_NEGATIVE), (In::Number, SHARES), (In::Number, SHARES)]),
+            Optional,
+            "Rows of suction head, saturation and relative permeability, instead of alpha and n. The first row is \
+             [0, 1, 1]. The curve is smooth and falls between the rows, and is constant beyond the last one.",
+        )
+        .example("[[0.0, 1.0, 1.0], [2.0, 0.6, 0.1]]"),
+        key("residual", Quantity(In::Number, SHARE), Default("0"), "Saturation that no suction removes.")
+            .symbol("S_r")
+            .example("0.1"),
+    ],
+    exclusive: &[one_of(&["alpha", "curve"], true)],
+};
+
+const PORES: Range = Range::of(Included(1.05), Included(20.0));
+const SHARE: Range = Range::of(Included(0.0), Excluded(1.0));
+const SHARES: Range = Range::of(Included(0.0), Included(1.0));
+
+static DAMPING: Table = Table {
+    header: "[material.NAME] damping",
+    doc: "Kelvin-Voigt damping: the elastic stiffness times ratio/(π frequency) times the rate of elastic strain. \
+          The damping ratio grows in proportion to the frequency. Motion without strain and plastic flow are not \
+          damped.",
+    keys: &[
+        key(
+            "ratio",
+            Quantity(In::Number, BELOW_1),
+            Required,
+            "Damping ratio (part of critical damping) at this frequency.",
+        )
+        .symbol("ξ")
+        .example("0.05"),
+        key("frequency", Quantity(In::Number, Range::POSITIVE), Required, "Frequency in Hz.")
+            .symbol("f")
+            .example("2.0"),
+    ],
+    exclusive: &[],
+};
+
+const POISSON: Range = Range {
+    lower: Excluded(-1.0),
+    upper: Excluded(0.5),
+    why: "at 0.5 the material is incompressible; for undrained soil use 0.49 with model = \"tresca\", or drainage = \"undrained\"",
+};
+/// Slopes of compression.
+const BELOW_1: Range = Range::of(Excluded(0.0), Excluded(1.0));
+/// Stress ratio: that of 90 degrees is 3.
+const BELOW_3: Range = Range::of(Excluded(0.0), Excluded(3.0));
+/// Friction and dilation angles, degrees.
+const BELOW_90: Range = Range::of(Included(0.0), Excluded(90.0));
