@@ -2,7 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Kind, Range, Table, key, one_of};
+use super::{Dimension as In, Key, Kind, Range, Table, key, one_of};
 use crate::words::{Axis, Word};
 
 pub(super) static BODY: Table = Table {
@@ -12,37 +12,14 @@ pub(super) static BODY: Table = Table {
         key("material", Name, Required, "Name of its material.").example(r#""clay""#),
         key("name", Name, Optional, "Name by which stages, histories and results refer to the body.")
             .example(r#""lift_1""#),
-        key("box", Kind::Table(&BOX), Optional, "A rectangle, in 3-D a cuboid.")
-            .example("{ lower = [0.0, 0.0], upper = [10.0, 4.0] }"),
-        key("polygon", POLYGON, Optional, "Corners of a polygon, clockwise or counter-clockwise.")
-            .example("[[0.0, 0.0], [20.0, 0.0], [0.0, 10.0]]"),
-        key("circle", Kind::Table(&CIRCLE), Optional, "A circle.")
-            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
-        key(
-            "extrude",
-            Kind::Table(&EXTRUDE),
-            Optional,
-            "An outline that is extruded along an axis, for instance a cylinder. Only in 3-D.",
-        )
-        .example(r#"{ circle = { centre = [0.0, 0.0], radius = 1.0 }, along = "z", from = 0.0, to = 2.0 }"#),
-        key("sphere", Kind::Table(&SPHERE), Optional, "A sphere. Only in 3-D.")
-            .example(r#"{ centre = [0.0, 0.0, 1.0], radius = "1 m" }"#),
-        key(
-            "revolve",
-            Kind::Table(&REVOLVE),
-            Optional,
-            "An outline that is rotated about a vertical axis. Only in 3-D.",
-        )
-        .example("{ polygon = [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]], about = [0.0, 0.0] }"),
-        key("terrain", Kind::Table(&TERRAIN), Optional, "The ground below a raster of heights. Only in 3-D.")
-            .example(r#"{ top = { file = "terrain.asc" }, level = 0.0 }"#),
-        key(
-            "surface",
-            Kind::Table(&SURFACE),
-            Optional,
-            "The space that a closed surface of triangles encloses. Only in 3-D.",
-        )
-        .example(r#"{ triangles = { file = "body.stl" } }"#),
+        BOX_KEY,
+        POLYGON_KEY,
+        CIRCLE_KEY,
+        EXTRUDE_KEY,
+        SPHERE_KEY,
+        REVOLVE_KEY,
+        TERRAIN_KEY,
+        SURFACE_KEY,
         key("subtract", Tables(&SUBTRACT), Optional, "Shapes that are cut out of the body.")
             .example("[{ box = { lower = [2.0, 2.0], upper = [4.0, 4.0] } }]"),
         key(
@@ -111,34 +88,7 @@ pub(super) static CIRCLE: Table = Table {
 static SUBTRACT: Table = Table {
     header: "subtract = [{ ... }, ...]",
     doc: "A shape that is cut out of a body. It may extend beyond the body.",
-    keys: &[
-        key("box", Kind::Table(&BOX), Optional, "A rectangle, in 3-D a cuboid.")
-            .example("{ lower = [0.0, 0.0], upper = [10.0, 4.0] }"),
-        key("polygon", POLYGON, Optional, "Corners of a polygon, clockwise or counter-clockwise.")
-            .example("[[0.0, 0.0], [20.0, 0.0], [0.0, 10.0]]"),
-        key("circle", Kind::Table(&CIRCLE), Optional, "A circle.")
-            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
-        key("extrude", Kind::Table(&EXTRUDE), Optional, "An outline that is extruded along an axis. Only in 3-D.")
-            .example(r#"{ circle = { centre = [0.0, 0.0], radius = 1.0 }, along = "z", from = 0.0, to = 2.0 }"#),
-        key("sphere", Kind::Table(&SPHERE), Optional, "A sphere. Only in 3-D.")
-            .example(r#"{ centre = [0.0, 0.0, 1.0], radius = "1 m" }"#),
-        key(
-            "revolve",
-            Kind::Table(&REVOLVE),
-            Optional,
-            "An outline that is rotated about a vertical axis. Only in 3-D.",
-        )
-        .example("{ polygon = [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]], about = [0.0, 0.0] }"),
-        key("terrain", Kind::Table(&TERRAIN), Optional, "The ground below a raster of heights. Only in 3-D.")
-            .example(r#"{ top = { file = "terrain.asc" }, level = 0.0 }"#),
-        key(
-            "surface",
-            Kind::Table(&SURFACE),
-            Optional,
-            "The space that a closed surface of triangles encloses. Only in 3-D.",
-        )
-        .example(r#"{ triangles = { file = "body.stl" } }"#),
-    ],
+    keys: &[BOX_KEY, POLYGON_KEY, CIRCLE_KEY, EXTRUDE_KEY, SPHERE_KEY, REVOLVE_KEY, TERRAIN_KEY, SURFACE_KEY],
     exclusive: &[one_of(SHAPES, true)],
 };
 
@@ -199,10 +149,8 @@ static EXTRUDE: Table = Table {
     doc: "An outline in the plane of two axes, extruded along the third one. The outline has the coordinates of the \
           two axes in their order. A circle makes a cylinder.",
     keys: &[
-        key("polygon", POLYGON, Optional, "Corners of a polygon, clockwise or counter-clockwise.")
-            .example("[[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]"),
-        key("circle", Kind::Table(&CIRCLE), Optional, "A circle.")
-            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
+        POLYGON_KEY,
+        CIRCLE_KEY,
         key("along", Choice(Axis::WORDS), Required, "The axis of the extrusion.").example(r#""z""#),
         key("from", Quantity(In::Length, Range::ANY), Required, "Coordinate at which it begins.").example("0.0"),
         key("to", Quantity(In::Length, Range::ANY), Required, "Coordinate at which it ends.").example(r#""2 m""#),
@@ -244,3 +192,33 @@ pub(super) static BOX: Table = Table {
     ],
     exclusive: &[],
 };
+
+// Keys that several tables have.
+const BOX_KEY: Key = key("box", Kind::Table(&BOX), Optional, "A rectangle, in 3-D a cuboid.")
+    .example("{ lower = [0.0, 0.0], upper = [10.0, 4.0] }");
+const POLYGON_KEY: Key = key("polygon", POLYGON, Optional, "Corners of a polygon, clockwise or counter-clockwise.")
+    .example("[[0.0, 0.0], [20.0, 0.0], [0.0, 10.0]]");
+pub(super) const CIRCLE_KEY: Key =
+    key("circle", Kind::Table(&CIRCLE), Optional, "A circle.").example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#);
+const EXTRUDE_KEY: Key = key(
+    "extrude",
+    Kind::Table(&EXTRUDE),
+    Optional,
+    "An outline that is extruded along an axis, for instance a cylinder. Only in 3-D.",
+)
+.example(r#"{ circle = { centre = [0.0, 0.0], radius = 1.0 }, along = "z", from = 0.0, to = 2.0 }"#);
+const SPHERE_KEY: Key = key("sphere", Kind::Table(&SPHERE), Optional, "A sphere. Only in 3-D.")
+    .example(r#"{ centre = [0.0, 0.0, 1.0], radius = "1 m" }"#);
+const REVOLVE_KEY: Key =
+    key("revolve", Kind::Table(&REVOLVE), Optional, "An outline that is rotated about a vertical axis. Only in 3-D.")
+        .example("{ polygon = [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]], about = [0.0, 0.0] }");
+const TERRAIN_KEY: Key =
+    key("terrain", Kind::Table(&TERRAIN), Optional, "The ground below a raster of heights. Only in 3-D.")
+        .example(r#"{ top = { file = "terrain.asc" }, level = 0.0 }"#);
+const SURFACE_KEY: Key = key(
+    "surface",
+    Kind::Table(&SURFACE),
+    Optional,
+    "The space that a closed surface of triangles encloses. Only in 3-D.",
+)
+.example(r#"{ triangles = { file = "body.stl" } }"#);

@@ -2,7 +2,7 @@
 
 use super::Kind::{self, *};
 use super::Presence::Optional;
-use super::{Dimension as In, Range, Table, body, key, loads, one_of};
+use super::{Dimension as In, Range, Table, key, loads, one_of};
 use crate::words::{Side, Word};
 
 const PLACE: Kind = Pair(In::Length, Range::ANY);
@@ -23,18 +23,10 @@ pub(super) static DRAIN: Table = Table {
         )
         .example(r#""bottom""#),
         key("from", PLACE, Optional, "One end of a segment of a body's surface, at the start.").example("[0.0, 6.0]"),
-        key("to", PLACE, Optional, "The other end of the segment.").example("[10.0, 6.0]"),
-        key("circle", Kind::Table(&body::CIRCLE), Optional, "A circle. Only its part inside the grid counts.")
-            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
-        key(
-            "rectangle",
-            loads::RECTANGLE,
-            Optional,
-            "A rectangle in 3-D, given as a box without thickness along one axis.",
-        )
-        .example("{ lower = [0.0, 0.0, 6.0], upper = [4.0, 2.0, 6.0] }"),
-        key("disc", Kind::Table(&loads::DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
-            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
+        loads::TO_KEY,
+        loads::CIRCLE_KEY,
+        loads::RECTANGLE_KEY,
+        loads::DISC_KEY,
         key(
             "surface",
             Flag,
@@ -96,17 +88,10 @@ pub(super) static INFLOW: Table = Table {
             "A face of the grid. Only the part counts that lies between the ends of the permeable bodies there.",
         )
         .example(r#""top""#),
-        key("from", PLACE, Optional, "One end of the segment, at the start.").example("[0.0, 6.0]"),
-        key("to", PLACE, Optional, "The other end of the segment.").example("[10.0, 6.0]"),
-        key(
-            "rectangle",
-            loads::RECTANGLE,
-            Optional,
-            "A rectangle in 3-D, given as a box without thickness along one axis.",
-        )
-        .example("{ lower = [0.0, 0.0, 6.0], upper = [4.0, 2.0, 6.0] }"),
-        key("disc", Kind::Table(&loads::DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
-            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
+        loads::FROM_KEY,
+        loads::TO_KEY,
+        loads::RECTANGLE_KEY,
+        loads::DISC_KEY,
         key(
             "rate",
             Quantity(In::Seepage, Range::ANY),

@@ -2,7 +2,7 @@
 
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Kind, Range, Table, body, key, one_of};
+use super::{Dimension as In, Key, Kind, Range, Table, body, key, one_of};
 use crate::words::{Axis, Base, Components, Failure, Settled, Side, Start, Support, Word};
 use std::ops::Bound::Included;
 
@@ -26,16 +26,7 @@ static CONTACT: Table = Table {
     header: "left = { friction_coefficient, separates }",
     doc: "Frictional contact (Coulomb) of the material with a face of the grid. The material may separate from it.",
     keys: &[
-        key(
-            "friction_coefficient",
-            Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
-            Required,
-            "Friction coefficient, the tangent of the friction angle of the interface. [strength_reduction] divides \
-             it too.",
-        )
-        .symbol("μ")
-        .example("0.3")
-        .renamed_from(&["friction"]),
+        FRICTION_KEY,
         key(
             "separates",
             Flag,
@@ -55,29 +46,11 @@ pub(super) static FOOTING: Table = Table {
     keys: &[
         key("from", PLACE, Optional, "One end of its base, at the start.").example("[0.0, 10.0]"),
         key("to", PLACE, Optional, "The other end of its base.").example("[2.0, 10.0]"),
-        key("rectangle", RECTANGLE, Optional, "A rectangle in 3-D, given as a box without thickness along one axis.")
-            .example("{ lower = [0.0, 0.0, 6.0], upper = [1.0, 1.0, 6.0] }"),
-        key("disc", Kind::Table(&DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
-            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
-        key("displacement", DISPLACEMENT, Optional, "Displacement at the end of the run. It grows linearly with time.")
-            .symbol("u")
-            .example("[0.0, -0.2]"),
-        key(
-            "velocity",
-            VELOCITY,
-            Optional,
-            "Constant velocity. In a quasi-static analysis it is a number: metres per unit of pseudo-time.",
-        )
-        .symbol("v")
-        .example("[0.0, -0.01]"),
-        key(
-            "path",
-            PATH,
-            Optional,
-            "Rows [t, ux, uy], in 3-D [t, ux, uy, uz], with t increasing. The displacement is interpolated linearly, \
-             starts from zero at time 0 and is constant after the last row.",
-        )
-        .example("[[0.0, 0.0, 0.0], [1.0, 0.0, -0.2]]"),
+        RECTANGLE_KEY,
+        DISC_KEY,
+        DISPLACEMENT_KEY,
+        VELOCITY_KEY,
+        PATH_KEY,
         key(
             "interface",
             ChoiceOr(Base::WORDS, &FRICTIONAL),
@@ -122,31 +95,13 @@ pub(super) static PRESCRIBED: Table = Table {
     keys: &[
         key("face", Choice(Side::WORDS), Optional, "The face of the grid, which must be free in [boundary].")
             .example(r#""left""#),
-        key("from", PLACE, Optional, "One end of the segment, at the start.").example("[0.0, 2.0]"),
-        key("to", PLACE, Optional, "The other end of the segment.").example("[0.0, 4.0]"),
-        key("rectangle", RECTANGLE, Optional, "A rectangle in 3-D, given as a box without thickness along one axis.")
-            .example("{ lower = [0.0, 0.0, 6.0], upper = [1.0, 1.0, 6.0] }"),
-        key("disc", Kind::Table(&DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
-            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
-        key("displacement", DISPLACEMENT, Optional, "Displacement at the end of the run. It grows linearly with time.")
-            .symbol("u")
-            .example("[0.1, 0.0]"),
-        key(
-            "velocity",
-            VELOCITY,
-            Optional,
-            "Constant velocity. In a quasi-static analysis it is a number: metres per unit of pseudo-time.",
-        )
-        .symbol("v")
-        .example("[0.01, 0.0]"),
-        key(
-            "path",
-            PATH,
-            Optional,
-            "Rows [t, ux, uy], in 3-D [t, ux, uy, uz], with t increasing. The displacement is interpolated linearly, \
-             starts from zero at time 0 and is constant after the last row.",
-        )
-        .example("[[0.0, 0.0, 0.0], [1.0, 0.1, 0.0]]"),
+        FROM_KEY,
+        TO_KEY,
+        RECTANGLE_KEY,
+        DISC_KEY,
+        DISPLACEMENT_KEY,
+        VELOCITY_KEY,
+        PATH_KEY,
         key(
             "components",
             ChoiceOr(Components::WORDS, &FRICTIONAL),
@@ -168,16 +123,7 @@ static FRICTIONAL: Table = Table {
     doc: "Frictional contact (Coulomb) of a footing or a prescribed segment with the material on one side of it. The \
           material may separate from it.",
     keys: &[
-        key(
-            "friction_coefficient",
-            Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
-            Required,
-            "Friction coefficient, the tangent of the friction angle of the interface. [strength_reduction] divides \
-             it too.",
-        )
-        .symbol("μ")
-        .example("0.3")
-        .renamed_from(&["friction"]),
+        FRICTION_KEY,
         key(
             "separates",
             Flag,
@@ -195,14 +141,11 @@ pub(super) static TRACTION: Table = Table {
     doc: "A stress on a segment of a body's surface or on a circle, in 3-D on a rectangle, a disc, a sphere or \
           triangles. It moves with the surface.",
     keys: &[
-        key("from", PLACE, Optional, "One end of the segment, at the start.").example("[0.0, 6.0]"),
-        key("to", PLACE, Optional, "The other end of the segment.").example("[10.0, 6.0]"),
-        key("circle", Kind::Table(&body::CIRCLE), Optional, "A circle. Only its part inside the grid counts.")
-            .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
-        key("rectangle", RECTANGLE, Optional, "A rectangle in 3-D, given as a box without thickness along one axis.")
-            .example("{ lower = [0.0, 0.0, 6.0], upper = [4.0, 2.0, 6.0] }"),
-        key("disc", Kind::Table(&DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
-            .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }"),
+        FROM_KEY,
+        TO_KEY,
+        CIRCLE_KEY,
+        RECTANGLE_KEY,
+        DISC_KEY,
         key("sphere", Kind::Table(&body::SPHERE), Optional, "A sphere in 3-D. Only its part inside the grid counts.")
             .example(r#"{ centre = [0.0, 0.0, 4.0], radius = "1 m" }"#),
         key("surface", Kind::Table(&body::SURFACE), Optional, "A surface of triangles at bodies, in 3-D.")
@@ -240,17 +183,8 @@ pub(super) static TRACTION: Table = Table {
              beginning of the stage that activates the load.",
         )
         .example(r#"[[0.0, 0.0], [1.0, "50 kPa"]]"#),
-        key("ramp", RAMP, Default("0.0"), "Time over which the load grows to its full value. With 0 it acts at once.")
-            .example("1.0"),
-        key(
-            "amplitude",
-            AMPLITUDE,
-            Optional,
-            "Rows [t, factor] of the load, instead of ramp, with t increasing. The factor is interpolated linearly. \
-             It is zero at time 0, unless a row gives another value, and constant after the last row. Time 0 is the \
-             beginning of the stage that activates the load.",
-        )
-        .example("[[0.0, 0.0], [1.0, 1.0]]"),
+        RAMP_KEY,
+        AMPLITUDE_KEY,
         key("name", Name, Optional, "Name by which stages refer to it.").example(r#""surcharge""#),
     ],
     exclusive: &[
@@ -300,17 +234,8 @@ pub(super) static POINT_LOAD: Table = Table {
              last row. Time 0 is the beginning of the stage that activates the load.",
         )
         .example(r#"[[0.0, 0.0, 0.0], [1.0, 0.0, "-10 kN/m"]]"#),
-        key("ramp", RAMP, Default("0.0"), "Time over which the load grows to its full value. With 0 it acts at once.")
-            .example("1.0"),
-        key(
-            "amplitude",
-            AMPLITUDE,
-            Optional,
-            "Rows [t, factor] of the load, instead of ramp, with t increasing. The factor is interpolated linearly. \
-             It is zero at time 0, unless a row gives another value, and constant after the last row. Time 0 is the \
-             beginning of the stage that activates the load.",
-        )
-        .example("[[0.0, 0.0], [1.0, 1.0]]"),
+        RAMP_KEY,
+        AMPLITUDE_KEY,
         key("name", Name, Optional, "Name by which stages refer to it.").example(r#""crane""#),
     ],
     exclusive: &[one_of(&["force", "force_path"], true), one_of(&["ramp", "amplitude", "force_path"], false)],
@@ -431,3 +356,59 @@ pub(super) static ANGLE_PROFILE: Table = Table {
     ],
     exclusive: &[],
 };
+
+// Keys that several tables have.
+const FRICTION_KEY: Key = key(
+    "friction_coefficient",
+    Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
+    Required,
+    "Friction coefficient, the tangent of the friction angle of the interface. [strength_reduction] divides \
+             it too.",
+)
+.symbol("μ")
+.example("0.3")
+.renamed_from(&["friction"]);
+pub(super) const RECTANGLE_KEY: Key =
+    key("rectangle", RECTANGLE, Optional, "A rectangle in 3-D, given as a box without thickness along one axis.")
+        .example("{ lower = [0.0, 0.0, 6.0], upper = [1.0, 1.0, 6.0] }");
+pub(super) const DISC_KEY: Key =
+    key("disc", Kind::Table(&DISC), Optional, "A disc in 3-D. Only its part inside the grid counts.")
+        .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }");
+pub(super) const DISPLACEMENT_KEY: Key =
+    key("displacement", DISPLACEMENT, Optional, "Displacement at the end of the run. It grows linearly with time.")
+        .symbol("u")
+        .example("[0.0, -0.2]");
+pub(super) const VELOCITY_KEY: Key = key(
+    "velocity",
+    VELOCITY,
+    Optional,
+    "Constant velocity. In a quasi-static analysis it is a number: metres per unit of pseudo-time.",
+)
+.symbol("v")
+.example("[0.0, -0.01]");
+pub(super) const PATH_KEY: Key = key(
+    "path",
+    PATH,
+    Optional,
+    "Rows [t, ux, uy], in 3-D [t, ux, uy, uz], with t increasing. The displacement is interpolated linearly, \
+             starts from zero at time 0 and is constant after the last row.",
+)
+.example("[[0.0, 0.0, 0.0], [1.0, 0.0, -0.2]]");
+pub(super) const FROM_KEY: Key =
+    key("from", PLACE, Optional, "One end of the segment, at the start.").example("[0.0, 2.0]");
+pub(super) const TO_KEY: Key = key("to", PLACE, Optional, "The other end of the segment.").example("[0.0, 4.0]");
+pub(super) const CIRCLE_KEY: Key =
+    key("circle", Kind::Table(&body::CIRCLE), Optional, "A circle. Only its part inside the grid counts.")
+        .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#);
+const RAMP_KEY: Key =
+    key("ramp", RAMP, Default("0.0"), "Time over which the load grows to its full value. With 0 it acts at once.")
+        .example("1.0");
+const AMPLITUDE_KEY: Key = key(
+    "amplitude",
+    AMPLITUDE,
+    Optional,
+    "Rows [t, factor] of the load, instead of ramp, with t increasing. The factor is interpolated linearly. \
+             It is zero at time 0, unless a row gives another value, and constant after the last row. Time 0 is the \
+             beginning of the stage that activates the load.",
+)
+.example("[[0.0, 0.0], [1.0, 1.0]]");

@@ -25,8 +25,7 @@ pub(super) static RIGID: Table = Table {
         key("name", Name, Required, "Name by which stages and histories refer to it.").example(r#""pipe""#),
         key("polygon", body::POLYGON, Optional, "Corners of a polygon at the start, clockwise or counter-clockwise.")
             .example("[[0.0, 4.0], [1.0, 4.0], [0.5, 3.0]]"),
-        key("circle", Kind::Table(&body::CIRCLE), Optional, "A circle.")
-            .example(r#"{ centre = [2.0, 2.0], radius = "0.5 m" }"#),
+        body::CIRCLE_KEY,
         key("box", Kind::Table(&body::BOX), Optional, "A cuboid, in 3-D.")
             .example("{ lower = [0.0, 0.0, 4.0], upper = [1.0, 1.0, 5.0] }"),
         key("sphere", Kind::Table(&body::SPHERE), Optional, "A sphere, in 3-D.")
@@ -50,30 +49,9 @@ pub(super) static RIGID: Table = Table {
         .symbol("μ")
         .example("0.3")
         .renamed_from(&["friction"]),
-        key(
-            "displacement",
-            loads::DISPLACEMENT,
-            Optional,
-            "Displacement at the end of the run. It grows linearly with time.",
-        )
-        .symbol("u")
-        .example("[0.0, 0.1]"),
-        key(
-            "velocity",
-            loads::VELOCITY,
-            Optional,
-            "Constant velocity. In a quasi-static analysis it is a number: metres per unit of pseudo-time.",
-        )
-        .symbol("v")
-        .example("[0.0, 0.01]"),
-        key(
-            "path",
-            loads::PATH,
-            Optional,
-            "Rows [t, ux, uy], in 3-D [t, ux, uy, uz], with t increasing. The displacement is interpolated linearly, \
-             starts from zero at time 0 and is constant after the last row.",
-        )
-        .example("[[0.0, 0.0, 0.0], [1.0, 0.0, 0.1]]"),
+        loads::DISPLACEMENT_KEY,
+        loads::VELOCITY_KEY,
+        loads::PATH_KEY,
         key(
             "rotation",
             ROTATION,
