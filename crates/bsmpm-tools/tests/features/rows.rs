@@ -95,7 +95,8 @@ pub const ROWS: &[Feature] = &[
         ),
         extra: "[initial]\nk0 = 0.6\n[[traction]]\nfrom = [0.0, 2.0]\nto = [8.0, 2.0]\npressure = \"20 kPa\"\nramp = 0.5\n",
         extra_in_space: Some(
-            "[initial]\nk0 = 0.6\n[[traction]]\nrectangle = { lower = [0.0, 0.0, 2.0], upper = [8.0, 2.0, 2.0] }\npressure = \"20 kPa\"\nramp = 0.5\n",
+            "[initial]\nk0 = 0.6\n[[traction]]\nrectangle = { lower = [0.0, 0.0, 2.0], upper = [8.0, 2.0, 2.0] }\n\
+             pressure = \"20 kPa\"\nramp = 0.5\n",
         ),
         name: "law: modified Cam-clay",
         ..Feature::NONE
