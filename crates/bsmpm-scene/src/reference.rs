@@ -111,9 +111,7 @@ impl Page {
         if !matches!(key.kind, Kind::Open) {
             let _ = write!(text, " {}.", capitalised(&takes(key)));
         }
-        let chosen = key.presence == Presence::Required && key.doc.contains("`accuracy`");
-        let _ =
-            write!(text, " {}{}.", presence(key.presence), if chosen { ", unless `accuracy` chooses it" } else { "" });
+        let _ = write!(text, " {}{}.", presence(key.presence), unless_preset(key.has_preset));
         if let Some(value) = key.example_value() {
             let _ = write!(text, " Example: `{} = {value}`.", key.name);
         }
@@ -218,10 +216,14 @@ fn quoted(table: &Table) -> String {
 /// Keys of which only one may be given, in words; the ends of a segment are given together.
 fn choice(group: &Group) -> String {
     let keys: Vec<String> = group.keys.iter().map(|key| format!("`{key}`")).collect();
+    let keys = keys.join(", ").replace("`from`", "`from` with `to`");
     let how_many = if group.required { "Give one" } else { "Give at most one" };
-    let is_chosen = group.required && (group.keys.contains(&"steps") || group.keys.contains(&"cell"));
-    let unless = if is_chosen { ", unless `accuracy` chooses it" } else { "" };
-    format!("{how_many} of {}{unless}.", keys.join(", ")).replace("`from`", "`from` with `to`")
+    format!("{how_many} of {keys}{}.", unless_preset(group.has_preset))
+}
+
+/// What is appended to a requirement where a preset meets it.
+fn unless_preset(has_preset: bool) -> &'static str {
+    if has_preset { ", unless `accuracy` chooses it" } else { "" }
 }
 
 /// Whether a group is that of the second end of a segment, whose first end has the same group.

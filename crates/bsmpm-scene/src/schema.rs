@@ -44,10 +44,16 @@ pub struct Group {
     pub keys: &'static [&'static str],
     /// Whether one of them must be given.
     pub required: bool,
+    /// Whether `accuracy` chooses one of them where none is given.
+    pub has_preset: bool,
 }
 
 const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
-    Group { keys, required }
+    Group { keys, required, has_preset: false }
+}
+
+const fn one_of_or_preset(keys: &'static [&'static str]) -> Group {
+    Group { keys, required: true, has_preset: true }
 }
 
 /// A key of a table.
@@ -67,12 +73,19 @@ pub struct Key {
     pub value: &'static str,
     /// Names that it had in earlier versions, which are still read.
     pub earlier: &'static [&'static str],
+    /// Whether `accuracy` chooses its value where it is not given.
+    pub has_preset: bool,
 }
 
 impl Key {
     /// The same key with the names that it had in earlier versions.
     const fn renamed_from(self, earlier: &'static [&'static str]) -> Self {
         Self { earlier, ..self }
+    }
+
+    /// The same key, whose value `accuracy` chooses where it is not given.
+    const fn or_preset(self) -> Self {
+        Self { has_preset: true, ..self }
     }
 
     /// The same key with its symbol in the field.
@@ -100,7 +113,7 @@ impl Key {
 }
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
-    Key { name, kind, presence, doc, symbol: "", value: "", earlier: &[] }
+    Key { name, kind, presence, doc, symbol: "", value: "", earlier: &[], has_preset: false }
 }
 
 /// Whether a key must be given, and what holds if it is not.

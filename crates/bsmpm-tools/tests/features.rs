@@ -6,7 +6,7 @@ mod features {
 
 use bsmpm_scene::Case;
 use bsmpm_tools::fos;
-use features::rows::{Feature, ROWS};
+use features::rows::{BLOCK_IN_PLANE, BLOCK_IN_SPACE, Feature, MOHR_COULOMB, PORES, ROWS, WATER};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -37,47 +37,28 @@ impl Verdict {
 
 /// A block of soil in the lower part of the grid with a feature.
 fn case_text(feature: &Feature, geometry: &str, analysis: &str) -> String {
-    let is_solid = geometry == "3d";
-    let lines = |in_plane: &str, in_space: &str| if is_solid { in_space.to_owned() } else { in_plane.to_owned() };
-    let time = match analysis {
-        "quasi-static" => "type = \"quasi-static\"\nsteps = 10",
-        "dynamic" => "type = \"dynamic\"\nend = 1.0\ndt = 0.01",
-        _ => "type = \"consolidation\"\nend = \"10 d\"\ndt = \"1 d\"",
-    };
-    let time = feature.analysis.unwrap_or(time);
-    let has_water = analysis == "consolidation" && !feature.extra.contains("[water]");
-    let water =
-        if has_water { "[water]\nlevel = 2.0\ndrainage = \"coupled\"\n[[drain]]\nface = \"bottom\"\n" } else { "" };
-    let pores = if analysis == "consolidation" && !feature.soil.contains("porosity") {
-        "porosity = 0.4\npermeability = 1e-6\n"
-    } else {
-        ""
-    };
-    let sides = lines("left = \"roller\"\n", "left = \"roller\"\nfront = \"roller\"\nback = \"roller\"\n");
+    let block = if geometry == "3d" { BLOCK_IN_SPACE } else { BLOCK_IN_PLANE };
+    let extra = if geometry == "3d" { feature.extra_in_space.unwrap_or(feature.extra) } else { feature.extra };
     let fit = if geometry == "plane-strain" { "plane-strain" } else { "outer" };
-    let law = feature.law.unwrap_or(features::rows::MOHR_COULOMB).replace("{FIT}", fit);
-    let extra = lines(feature.extra, feature.extra_in_space.unwrap_or(feature.extra));
-    let extra = extra.replace("{X}", if geometry == "axisymmetric" { "0.0" } else { "4.0" });
-    let with_flow = if analysis == "consolidation" { feature.extra_with_flow } else { "" };
-    let flows = analysis == "consolidation" && feature.soil.is_empty();
-    let extra = if flows { extra.replace("[water]\n", "[water]\ndrainage = \"coupled\"\n") } else { extra };
-    format!(
-        "geometry = \"{geometry}\"\n{}[analysis]\n{time}\n{}[gravity]\nacceleration = {}\n[grid]\nlower = {}\nupper = {}\n{}\n\
-         [boundary]\nbottom = \"{}\"\nright = \"{}\"\n{sides}[stabilisation]\nmethod = \"consistent-f-bar\"\n\
-         [material.soil]\n{}\nunit_weight = \"20 kN/m3\"\n{pores}{}[[body]]\nmaterial = \"soil\"\nname = \"ground\"\nbox = {}\n\
-         points_per_cell = 3\n{water}{extra}{with_flow}",
-        feature.top,
-        feature.analysis_keys,
-        lines("[0.0, -9.81]", "[0.0, 0.0, -9.81]"),
-        lines("[0.0, 0.0]", "[0.0, 0.0, 0.0]"),
-        lines("[8.0, 4.0]", "[8.0, 2.0, 4.0]"),
-        feature.grid.unwrap_or("cell = 0.5"),
-        feature.bottom.unwrap_or("fixed"),
-        feature.right.unwrap_or("roller"),
-        law,
-        feature.soil,
-        lines("{ lower = [0.0, 0.0], upper = [8.0, 2.0] }", "{ lower = [0.0, 0.0, 0.0], upper = [8.0, 2.0, 2.0] }"),
-    )
+    let middle = if geometry == "axisymmetric" { "0.0" } else { "4.0" };
+    let [time, soil, tables] = match analysis {
+        "quasi-static" => ["steps = 10", "", ""],
+        "dynamic" => ["end = 1.0\ndt = 0.01", "", ""],
+        _ if !feature.soil.is_empty() => ["end = \"10 d\"\ndt = \"1 d\"", "", feature.extra_with_flow],
+        _ if extra.contains("[water]") => ["end = \"10 d\"\ndt = \"1 d\"", PORES, feature.extra_with_flow],
+        _ => ["end = \"10 d\"\ndt = \"1 d\"", PORES, WATER],
+    };
+    block
+        .replace("{GEOMETRY}", geometry)
+        .replace("{TOP}", feature.top)
+        .replace("{ANALYSIS}", &format!("type = \"{analysis}\"\n{time}\n{}", feature.analysis_keys))
+        .replace("{BOTTOM}", feature.bottom.unwrap_or("fixed"))
+        .replace("{RIGHT}", feature.right.unwrap_or("roller"))
+        .replace("{LAW}", feature.law.unwrap_or(MOHR_COULOMB))
+        .replace("{SOIL}", &format!("{soil}{}", feature.soil))
+        .replace("{TABLES}", &format!("{extra}{tables}"))
+        .replace("{FIT}", fit)
+        .replace("{X}", middle)
 }
 
 /// What the reader says of a case, and the texts that it says it with.

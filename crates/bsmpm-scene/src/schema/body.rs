@@ -29,7 +29,8 @@ pub(super) static BODY: Table = Table {
             "Number of material points along each axis of a cell. Without this key `accuracy` or `purpose` chooses \
              it.",
         )
-        .example("3"),
+        .example("3")
+        .or_preset(),
         key(
             "velocity",
             Vector(In::Velocity, Range::ANY),

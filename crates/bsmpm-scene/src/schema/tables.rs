@@ -3,7 +3,8 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required, Retired};
 use super::{
-    Dimension as In, Kind, Range, Table, body, element, flow, key, loads, material, one_of, output, rigid, stage, water,
+    Dimension as In, Kind, Range, Table, body, element, flow, key, loads, material, one_of, one_of_or_preset, output,
+    rigid, stage, water,
 };
 use crate::words::{
     Accuracy, AnalysisType, BACKGROUND_CELLS, BACKGROUND_KIND, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear,
@@ -188,7 +189,7 @@ static ANALYSIS: Table = Table {
         .example("0.6")
         .renamed_from(&["gamma"]),
     ],
-    exclusive: &[one_of(&["dt", "steps"], true), one_of(&["spectral_radius", "newmark_gamma"], false)],
+    exclusive: &[one_of_or_preset(&["dt", "steps"]), one_of(&["spectral_radius", "newmark_gamma"], false)],
 };
 
 const GROWTH: Range = Range::of(Included(1.0), Included(10.0));
@@ -238,7 +239,7 @@ static GRID: Table = Table {
         )
         .example(r#""automatic""#),
     ],
-    exclusive: &[one_of(&["cell", "knots"], true)],
+    exclusive: &[one_of_or_preset(&["cell", "knots"])],
 };
 
 static KNOTS: Table = Table {

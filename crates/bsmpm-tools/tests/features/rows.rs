@@ -6,12 +6,8 @@ pub struct Feature {
     pub name: &'static str,
     /// Keys of the top level.
     pub top: &'static str,
-    /// The whole table of the analysis, without its header.
-    pub analysis: Option<&'static str>,
     /// Further keys of the analysis.
     pub analysis_keys: &'static str,
-    /// Cells of the grid.
-    pub grid: Option<&'static str>,
     /// Support of the bottom.
     pub bottom: Option<&'static str>,
     /// Support of the right side.
@@ -30,6 +26,65 @@ pub struct Feature {
     pub is_factor_of_safety: bool,
 }
 
+/// A block of soil; braces with capitals stand for what a feature, a geometry and an analysis put there.
+pub const BLOCK_IN_PLANE: &str = r#"geometry = "{GEOMETRY}"
+{TOP}[analysis]
+{ANALYSIS}
+[gravity]
+acceleration = [0.0, -9.81]
+[grid]
+lower = [0.0, 0.0]
+upper = [8.0, 4.0]
+cell = 0.5
+[boundary]
+bottom = "{BOTTOM}"
+left = "roller"
+right = "{RIGHT}"
+[stabilisation]
+method = "consistent-f-bar"
+[material.soil]
+{LAW}
+unit_weight = "20 kN/m3"
+{SOIL}[[body]]
+material = "soil"
+name = "ground"
+box = { lower = [0.0, 0.0], upper = [8.0, 2.0] }
+points_per_cell = 3
+{TABLES}"#;
+
+/// The same in 3-D.
+pub const BLOCK_IN_SPACE: &str = r#"geometry = "{GEOMETRY}"
+{TOP}[analysis]
+{ANALYSIS}
+[gravity]
+acceleration = [0.0, 0.0, -9.81]
+[grid]
+lower = [0.0, 0.0, 0.0]
+upper = [8.0, 2.0, 4.0]
+cell = 0.5
+[boundary]
+bottom = "{BOTTOM}"
+left = "roller"
+right = "{RIGHT}"
+front = "roller"
+back = "roller"
+[stabilisation]
+method = "consistent-f-bar"
+[material.soil]
+{LAW}
+unit_weight = "20 kN/m3"
+{SOIL}[[body]]
+material = "soil"
+name = "ground"
+box = { lower = [0.0, 0.0, 0.0], upper = [8.0, 2.0, 2.0] }
+points_per_cell = 3
+{TABLES}"#;
+
+/// Pores of soil in a consolidation analysis.
+pub const PORES: &str = "drainage = \"coupled\"\nporosity = 0.4\npermeability = 1e-6\n";
+/// Water of a consolidation analysis whose feature has none.
+pub const WATER: &str = "[water]\nlevel = 2.0\n[[drain]]\nface = \"bottom\"\n";
+
 pub const MOHR_COULOMB: &str =
     "model = \"mohr-coulomb\"\nyoung = \"30 MPa\"\npoisson = 0.3\nfriction_angle = 25.0\ncohesion = \"10 kPa\"";
 
@@ -40,9 +95,7 @@ impl Feature {
     pub const NONE: Self = Self {
         name: "",
         top: "",
-        analysis: None,
         analysis_keys: "",
-        grid: None,
         bottom: None,
         right: None,
         law: None,
