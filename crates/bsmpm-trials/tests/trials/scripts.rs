@@ -52,22 +52,33 @@ fn setup_says_nothing_of_alternatives_that_a_package_makes_itself() {
     }
 }
 
+/// The first case of the README.
+const SLOPE: &str = include_str!("../../../../cases/slope_runout.toml");
+
 /// A cargo that has built already.
 const CARGO: &str = r#"echo '"executable":"SOLVER"'; echo '"executable":"COMPANION"'"#;
+
+/// `scripts/run` in a scratch directory, with programs that are built already and two cores.
+fn run_script(scratch: &Scratch, arguments: &[&str]) -> Command {
+    let programs = scratch.path("programs");
+    std::fs::create_dir_all(&programs).unwrap();
+    let [solver, companion] = ["bsmpm-par", "bsmpm"].map(|name| executable(name).to_str().unwrap());
+    program(&programs, "cargo", &CARGO.replace("SOLVER", solver).replace("COMPANION", companion));
+    // As the program of that name, which follows OpenMP.
+    program(&programs, "nproc", "echo \"${OMP_NUM_THREADS:-2}\"");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/run");
+    // Jobs in the background ignore the signal, and so would all that they start.
+    let mut command = Command::new("env");
+    command.args(["--default-signal=INT", "bash"]).arg(&script).args(arguments).current_dir(scratch.path(""));
+    command.env("PATH", format!("{}:{}", programs.display(), std::env::var("PATH").unwrap()));
+    command
+}
 
 /// Ctrl-C of a terminal reaches the script alone, which passes on what mpirun forwards.
 #[test]
 fn an_interrupted_script_stops_the_run_and_says_how_to_continue() {
     let scratch = Scratch::with_case(&endless());
-    let programs = scratch.path("programs");
-    std::fs::create_dir(&programs).unwrap();
-    let [solver, companion] = ["bsmpm-par", "bsmpm"].map(|name| executable(name).to_str().unwrap());
-    program(&programs, "cargo", &CARGO.replace("SOLVER", solver).replace("COMPANION", companion));
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/run");
-    // Jobs in the background ignore the signal, and so would all that they start.
-    let mut command = Command::new("env");
-    command.args(["--default-signal=INT", "bash"]).arg(&script).arg("case.toml").current_dir(scratch.path(""));
-    command.env("PATH", format!("{}:{}", programs.display(), std::env::var("PATH").unwrap()));
+    let command = run_script(&scratch, &["-n", "2", "case.toml"]);
     let mut running = processes::start(command, &[], Ears::Open, Duration::from_secs(120));
     running.until("its tenth step", || {
         std::fs::read_to_string(scratch.path("case.out/steps.csv")).is_ok_and(|text| text.lines().count() > 12)
@@ -75,7 +86,17 @@ fn an_interrupted_script_stops_the_run_and_says_how_to_continue() {
     running.signal("INT");
     let output = running.end().expect(75);
     output.says_once("stopped by a signal (Ctrl-C or kill)");
-    // One rank is of use for so few points.
-    output.says_once("run -n 1 case.toml -o case.out --restart auto");
+    output.says_once("run -n 2 case.toml -o case.out --restart auto");
     assert_eq!(manifest(&scratch.path("case.out")).status, Status::Stopped);
+}
+
+/// Of 800 points one rank is as fast as two, of 16,000 points two are faster.
+#[test]
+fn a_script_takes_as_many_ranks_as_the_check_recommends() {
+    for (case, ranks) in [(endless(), 1), (SLOPE.to_owned(), 2)] {
+        let scratch = Scratch::with_case(&case);
+        let command = run_script(&scratch, &["case.toml", "--max-steps", "1"]);
+        processes::start(command, &[], Ears::Open, Duration::from_secs(120)).end().expect(75);
+        assert_eq!(manifest(&scratch.path("case.out")).ranks, ranks);
+    }
 }
