@@ -15,13 +15,12 @@ pub(crate) use value::UNREAD;
 
 /// Of a key of the language that this version does not have.
 const NOT_YET: &str = "E0012: this key is not available yet. Delete it.";
-/// Keys that the words of others stand for, and these others.
-const FILLED: &[&str] = &["cell", "knots", "degree", "points_per_cell", "steps", "dt", "method"];
-const FILLED_BY: &[&str] = &["accuracy", "analysis.purpose"];
+/// Keys whose words choose values that are not given.
+const PRESETS: &[&str] = &["accuracy", "analysis.purpose"];
 
-/// The keys whose words would give one of these a value.
-fn filled_by(keys: &[&str]) -> &'static [&'static str] {
-    if keys.iter().any(|key| FILLED.contains(key)) { FILLED_BY } else { &[] }
+/// The keys whose words would give a value to a key or group that has a preset.
+fn presets(has_preset: bool) -> &'static [&'static str] {
+    if has_preset { PRESETS } else { &[] }
 }
 
 /// A table whose keys and values are as the schema says.
@@ -146,7 +145,7 @@ impl Context {
                 }
                 (None, Presence::Required) => {
                     let message = missing(key);
-                    report.missing(origin, &record.path, &[key.name], message, filled_by(&[key.name]));
+                    report.missing(origin, &record.path, &[key.name], message, presets(key.has_preset));
                     record.fields.push(RecordField::absent(key.name, origin, None));
                 }
                 (None, Presence::Default(text)) => {
@@ -266,7 +265,7 @@ fn exclusive<'a>(
     if given.is_empty() && group.required && !is_reported {
         reported.missing.extend(group.keys);
         let message = format!("E0014: none of the keys {} is given. Add one of them.", group.keys.join(", "));
-        report.missing(record.origin, &record.path, group.keys, message, filled_by(group.keys));
+        report.missing(record.origin, &record.path, group.keys, message, presets(group.has_preset));
     }
 }
 
@@ -276,7 +275,7 @@ fn missing(key: &Key) -> String {
         return format!("E0014: this key is missing. Add it; its value is {}.", key.kind);
     };
     // A preset fills the others.
-    let is_named = |key: &&Key| matches!(key.presence, Presence::Required) && !FILLED.contains(&key.name);
+    let is_named = |key: &&Key| matches!(key.presence, Presence::Required) && !key.has_preset;
     let required = table.keys.iter().filter(is_named);
     let groups = table.exclusive.iter().filter(|group| group.required);
     let names: Vec<String> = required.map(|key| format!("`{}`", key.name)).chain(groups.map(first_two)).collect();

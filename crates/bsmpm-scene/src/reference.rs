@@ -134,7 +134,7 @@ impl Page {
 
     fn words(&mut self, bullet: &str, words: Words) {
         for (word, doc) in words.all() {
-            self.wrapped(bullet, &format!("`\"{word}\"`: {}", sentence(doc)));
+            self.wrapped(bullet, &format!("`\"{word}\"`: {}", doc));
         }
         for word in words.later {
             self.wrapped(bullet, &format!("`\"{word}\"`: Not available yet."));
@@ -168,7 +168,7 @@ impl Page {
         );
         for (word, doc) in Measurement::WORDS.all() {
             let Some(measured) = Measurement::of(word) else { continue };
-            self.wrapped("- ", &format!("**`{word}`** ({}): {}", measured.unit(), sentence(doc)));
+            self.wrapped("- ", &format!("**`{word}`** ({}): {}", measured.unit(), doc));
             for (suffix, part) in measured.columns().iter().filter(|(suffix, _)| !suffix.is_empty()) {
                 self.wrapped("  - ", &format!("`{suffix}`: {part}"));
             }
@@ -198,11 +198,6 @@ fn are_same(one: Words, other: Words) -> bool {
 /// Whether several keys have these words.
 fn is_shared(words: Words) -> bool {
     all_words().filter(|(_, other)| are_same(words, *other)).count() > 1
-}
-
-/// A text with a full stop.
-fn sentence(text: &str) -> String {
-    format!("{}.", text.trim_end_matches('.'))
 }
 
 /// A table's header, what is TOML in it as code.

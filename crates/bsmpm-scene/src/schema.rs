@@ -44,7 +44,7 @@ pub struct Group {
     pub keys: &'static [&'static str],
     /// Whether one of them must be given.
     pub required: bool,
-    /// Whether `accuracy` chooses one of them where none is given.
+    /// Whether `accuracy` or `purpose` chooses one of them where none is given.
     pub has_preset: bool,
 }
 
@@ -73,7 +73,7 @@ pub struct Key {
     pub value: &'static str,
     /// Names that it had in earlier versions, which are still read.
     pub earlier: &'static [&'static str],
-    /// Whether `accuracy` chooses its value where it is not given.
+    /// Whether `accuracy` or `purpose` chooses its value where it is not given.
     pub has_preset: bool,
 }
 
@@ -83,7 +83,7 @@ impl Key {
         Self { earlier, ..self }
     }
 
-    /// The same key, whose value `accuracy` chooses where it is not given.
+    /// The same key, whose value `accuracy` or `purpose` chooses where it is not given.
     const fn or_preset(self) -> Self {
         Self { has_preset: true, ..self }
     }

@@ -394,9 +394,10 @@ fn gravity(record: &Record, regime: Option<Regime>, end: Option<f64>, report: &m
         );
     }
     // The horizontal part of a pseudo-static load is no weight.
-    let size = match is_pseudo_static {
-        true => -acceleration[dims - 1],
-        false => acceleration[0].hypot(acceleration[1]).hypot(acceleration[2]),
+    let size = if is_pseudo_static {
+        -acceleration[dims - 1]
+    } else {
+        acceleration[0].hypot(acceleration[1]).hypot(acceleration[2])
     };
     let off = (size / STANDARD_GRAVITY - 1.0).abs();
     if off <= 0.01 && off > NEARLY_STANDARD {

@@ -47,7 +47,7 @@ names count together by the root mean square of their relative errors; a name wi
 next one. The quantity factor-of-safety runs `bsmpm fos` in place of each run. The cost is the CPU time of all
 ranks.
 
-DIR gets sweep.csv, sweep.json, a picture of error against cost for each quantity, and runs/.
+DIR gets sweep.csv, sweep.json, sweep.md (the table for a page), a picture of error against cost for each quantity, and runs/.
 
 Exit codes: 0 done, whatever the runs gave; 2 command line; 65 the case as it is has errors; 66 no such case; 80
 no run was completed.
@@ -119,6 +119,9 @@ pub fn run(arguments: &SweepArguments, mut report: impl FnMut(&str)) -> Result<(
     };
     let report = SweepReport::of(parts, &values, reference);
     let mut files = save(&output, NAME, &report.csv(), &report)?;
+    let page = output.join("sweep.md");
+    atomic::replace(&page, |file| file.write_all(report.markdown().as_bytes()))?;
+    files.push(page);
     files.extend(pictures(&report, &output)?);
     if !report.has_result() {
         return Err(Error::NoResult { table: output.join("sweep.csv") });

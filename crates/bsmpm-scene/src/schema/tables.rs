@@ -315,7 +315,8 @@ static STABILISATION: Table = Table {
     header: "[stabilisation]",
     doc: "Method against volumetric locking and oscillating stresses. The theory manual compares the methods.",
     keys: &[key("method", Choice(Stabilisation::WORDS), Required, "Which volume changes are averaged over the grid.")
-        .example(r#""consistent-f-bar""#)],
+        .example(r#""consistent-f-bar""#)
+        .or_preset()],
     exclusive: &[],
 };
 

@@ -60,7 +60,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
 }
 
-/// Whether a face is the bottom of the grid and rigid terrain lies above it, on which bodies come to rest.
+/// Whether a face is the bottom of the grid and the case has rigid terrain, which lies above it: the terrain is level beyond its
+/// raster, so that every body comes to rest on it.
 fn has_terrain_above(case: &Case, face: Face) -> bool {
     let is_bottom = face.axis == case.grid.dims() - 1 && !face.upper;
     let is_terrain = |rigid: &Rigid| matches!(rigid.shape, RigidShape::InSpace(RigidSolid::Terrain(_)));

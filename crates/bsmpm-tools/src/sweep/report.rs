@@ -149,6 +149,16 @@ impl SweepReport {
     }
 
     fn table(&self) -> String {
+        self.columns().text("") + "*: on the front of cost and error, to which no other run is cheaper and better\n"
+    }
+
+    /// The table for a page.
+    pub fn markdown(&self) -> String {
+        self.columns().markdown()
+    }
+
+    /// The table for a reader.
+    fn columns(&self) -> ReportTable<'_, SweepRow> {
         let mut table = ReportTable::of(&self.runs);
         for (axis, head) in self.heads.iter().enumerate() {
             table.column(head, |row| &row.settings[axis]);
@@ -170,9 +180,8 @@ impl SweepReport {
                 some(memory.map(|memory| format!("{:.0}", mebibytes(memory))))
             })
             .right("iterations", |row| row.cost.iterations)
-            .column("state", SweepRow::remark)
-            .text("")
-            + "*: on the front of cost and error, to which no other run is cheaper and better\n"
+            .column("state", SweepRow::remark);
+        table
     }
 
     /// A row a run.
@@ -307,6 +316,15 @@ mod tests {
         );
         assert!(text.contains("no-convergence: no, it said"), "{text}");
         assert!(self::report(0.001).text().contains("(the reference itself)"));
+    }
+
+    #[test]
+    fn the_table_for_a_page_marks_the_front_and_the_reference() {
+        let page = report(0.05).markdown();
+        let lines: Vec<&str> = page.lines().collect();
+        assert!(lines[0].starts_with("| cell | points_per_cell | a | error | b,c@0.5 | error | CPU s |"), "{page}");
+        assert!(lines[2].contains("| 10.000 % * |") && lines[5].contains("reference"), "{page}");
+        assert_eq!(lines.len(), 6);
     }
 
     #[test]

@@ -94,7 +94,7 @@ fn state(points: &Points<2>) -> (f64, f64, f64) {
     (points.u[0][0], motion.v[0][0], motion.a[0][0])
 }
 
-/// Closed form: amplification matrix of the method of Wood, Bossak and Zienkiewicz (1981).
+/// Closed form: amplification matrix of the method of Wood, Bossak and Zienkiewicz (1980).
 #[test]
 fn one_degree_of_freedom_follows_the_amplification_matrix() {
     for scheme in [0.0, 0.5, 0.8, 1.0].map(Scheme::Bossak).into_iter().chain([0.6, 1.0].map(Scheme::Gamma)) {
@@ -130,7 +130,7 @@ fn the_spectral_radius_at_infinite_frequency_is_the_one_that_is_asked_for() {
     stable.for_each(|scheme| assert!(greatest(scheme) <= 1.0 + 1e-9, "{scheme:?} is stable for every step"));
 }
 
-/// Theory: orders of the methods of Newmark (1959) and of Wood, Bossak and Zienkiewicz (1981).
+/// Theory: orders of the methods of Newmark (1959) and of Wood, Bossak and Zienkiewicz (1980).
 #[test]
 fn bossak_is_of_second_order_and_newmark_with_gamma_above_a_half_of_first() {
     let error = |scheme: Scheme, steps: f64| {
