@@ -138,8 +138,7 @@ fn walk(chapter: &Chapter, directory: &Path, options: &Options, counts: &mut Cou
 }
 
 /// Makes a directory with what a reader's clone has: its cases, and `scripts/run`, which finds the clone by its place.
-/// Without
-/// `is_full`, `scripts/run` takes the coarse preset of a case.
+/// Without `is_full`, `scripts/run` takes the coarse preset of a case.
 fn reader_directory(is_full: bool) -> io::Result<TempDir> {
     let repository = repository();
     let directory = tempfile::tempdir()?;

@@ -36,6 +36,8 @@
 //! `\tag{3.2}` numbers equation 2 of chapter 3 of the theory manual. Source code and other pages cite it as `(T3.2)`.
 #![forbid(unsafe_code)]
 
+use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag};
+use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 use std::{fs, io};
 
@@ -70,6 +72,8 @@ impl Chapter {
 pub struct Block {
     /// Line of its fence in the chapter, from 1.
     pub line: usize,
+    /// Bytes of the chapter from its first fence to its last.
+    pub range: Range<usize>,
     /// First word after the fence; empty without one.
     pub language: String,
     /// The other words after the fence.
@@ -128,6 +132,11 @@ pub struct Link {
 }
 
 impl Link {
+    /// The link with this target at this byte of a text.
+    pub fn at(text: &str, start: usize, target: &str) -> Link {
+        Link { line: line_at(text, start), target: target.to_owned() }
+    }
+
     /// Whether it leads to another site.
     pub fn is_external(&self) -> bool {
         self.target.contains("://")
@@ -199,36 +208,30 @@ pub fn files_of_summary(summary: &str) -> Vec<String> {
     targets.filter(|target| !target.is_empty()).collect()
 }
 
-/// The fenced blocks of a chapter in order. In a list, a fence and its text are indented alike.
-pub fn blocks(text: &str) -> Vec<Block> {
-    let mut found: Vec<Block> = Vec::new();
-    let mut indentation = "";
-    let mut is_open = false;
-    for (number, line) in text.lines().enumerate() {
-        match (words_after_fence(line), is_open) {
-            (Some(_), true) => is_open = false,
-            (Some(words), false) => {
-                is_open = true;
-                indentation = &line[..line.len() - line.trim_start().len()];
-                let mut words = separated(words).into_iter();
-                let language = words.next().unwrap_or_default();
-                found.push(Block { line: number + 1, language, attributes: words.collect(), text: String::new() });
-            }
-            (None, true) => {
-                if let Some(block) = found.last_mut() {
-                    block.text.push_str(line.strip_prefix(indentation).unwrap_or(line));
-                    block.text.push('\n');
-                }
-            }
-            (None, false) => {}
-        }
-    }
-    found
+/// The parts of a Markdown text, each with its range of bytes.
+pub fn events(text: &str) -> impl Iterator<Item = (Event<'_>, Range<usize>)> {
+    Parser::new_ext(text, Options::ENABLE_TABLES).into_offset_iter()
 }
 
-/// The words after a fence; none if the line is no fence.
-fn words_after_fence(line: &str) -> Option<&str> {
-    line.trim_start().strip_prefix("```")
+/// Line of a byte of a text, from 1.
+fn line_at(text: &str, byte: usize) -> usize {
+    text[..byte].matches('\n').count() + 1
+}
+
+/// The fenced blocks of a chapter in order.
+pub fn blocks(text: &str) -> Vec<Block> {
+    let mut found = Vec::new();
+    let mut events = events(text);
+    while let Some((event, range)) = events.next() {
+        let Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(words))) = event else { continue };
+        let mut words = separated(&words).into_iter();
+        let language = words.next().unwrap_or_default();
+        let attributes = words.collect();
+        let inside = events.by_ref().take_while(|(event, _)| matches!(event, Event::Text(_)));
+        let lines = inside.map(|(_, range)| &text[range]).collect();
+        found.push(Block { line: line_at(text, range.start), range, language, attributes, text: lines });
+    }
+    found
 }
 
 /// The words between commas. A comma within quotes or brackets does not separate.
@@ -251,94 +254,90 @@ fn separated(words: &str) -> Vec<String> {
     found.iter().map(|word| word.trim().to_owned()).collect()
 }
 
-/// The text with the lines of fenced blocks emptied, so that the other lines keep their numbers.
+/// The text with an empty line for each fenced block.
 pub fn prose(text: &str) -> String {
-    let mut found = String::new();
-    let mut is_open = false;
-    for line in text.lines() {
-        let is_fence = words_after_fence(line).is_some();
-        if !is_open && !is_fence {
-            found.push_str(line);
-        }
-        is_open ^= is_fence;
-        found.push('\n');
+    let mut prose = text.to_owned();
+    for block in blocks(text).into_iter().rev() {
+        prose.replace_range(block.range, "\n");
     }
-    found
+    prose
 }
 
-/// Links and pictures outside of fenced blocks.
-pub fn links(text: &str) -> Vec<Link> {
+/// A link or a picture with its places in the text, in bytes.
+struct PlacedLink {
+    link: Link,
+    /// All of it, as `[words](target)`.
+    whole: Range<usize>,
+    /// What is between its parentheses.
+    target: Range<usize>,
+    /// The paragraph that it belongs to, or the last one before it.
+    paragraph: Range<usize>,
+}
+
+/// Links and pictures of the form `[words](target)`, in the order of their targets.
+fn placed_links(text: &str) -> Vec<PlacedLink> {
     let mut found = Vec::new();
-    for (number, line) in prose(text).lines().enumerate() {
-        let targets = line.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
-        found.extend(targets.map(|(target, _)| Link { line: number + 1, target: target.to_owned() }));
+    let mut paragraph = 0..0;
+    for (event, whole) in events(text) {
+        match event {
+            Event::Start(Tag::Paragraph) => paragraph = whole,
+            Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => {
+                let inside = text[whole.clone()].strip_suffix(')');
+                let Some(words) = inside.and_then(|inside| inside.rfind("](")) else { continue };
+                let start = whole.start + words + 2;
+                let link = Link::at(text, start, &dest_url);
+                let target = start..whole.end - 1;
+                found.push(PlacedLink { link, whole, target, paragraph: paragraph.clone() });
+            }
+            _ => {}
+        }
     }
+    found.sort_by_key(|placed| placed.target.start);
     found
 }
 
-/// The text with the targets of its links and pictures replaced, except in fenced blocks.
-pub fn relinked(text: &str, mut replace: impl FnMut(&Link) -> String) -> String {
-    let mut found = String::new();
-    for ((number, line), prose_line) in text.lines().enumerate().zip(prose(text).lines()) {
-        let mut pieces = line.split("](");
-        found.push_str(pieces.next().unwrap_or_default());
-        for piece in pieces {
-            found.push_str("](");
-            match piece.split_once(')') {
-                Some((target, rest)) if !prose_line.is_empty() => {
-                    found.push_str(&replace(&Link { line: number + 1, target: target.to_owned() }));
-                    found.push(')');
-                    found.push_str(rest);
-                }
-                _ => found.push_str(piece),
-            }
-        }
-        found.push('\n');
+/// Links and pictures outside of code.
+pub fn links(text: &str) -> Vec<Link> {
+    placed_links(text).into_iter().map(|placed| placed.link).collect()
+}
+
+/// The text with the targets of its links and pictures replaced.
+pub fn relinked(text: &str, replace: impl Fn(&Link) -> String) -> String {
+    let mut relinked = text.to_owned();
+    for PlacedLink { link, target, .. } in placed_links(text).into_iter().rev() {
+        relinked.replace_range(target, &replace(&link));
     }
-    found
+    relinked
 }
 
 /// The pictures that are followed by a comment with the file that the commands draw.
 pub fn pictures(text: &str) -> Vec<Picture> {
-    let prose = prose(text);
     let mut found = Vec::new();
-    for (start, _) in prose.match_indices("![") {
-        let Some((caption, rest)) = prose[start..].split_once("](") else { continue };
-        let Some((target, rest)) = rest.split_once(')') else { continue };
-        let comment = rest.trim_start().strip_prefix("<!--").and_then(|comment| comment.split_once("-->"));
-        if let Some((drawn, _)) = comment {
-            let line = prose[..start + caption.len()].matches('\n').count() + 1;
-            found.push(Picture { line, target: target.to_owned(), drawn: drawn.trim().to_owned() });
+    for PlacedLink { link, whole, .. } in placed_links(text) {
+        let comment = text[whole.end..].trim_start().strip_prefix("<!--").and_then(|rest| rest.split_once("-->"));
+        if let Some((drawn, _)) = comment
+            && text[whole].starts_with('!')
+        {
+            found.push(Picture { line: link.line, target: link.target, drawn: drawn.trim().to_owned() });
         }
     }
     found
 }
 
-/// The text with the caption of each picture below it, as the built manual shows it: a picture that is a paragraph is
-/// followed by its caption in a paragraph of the class `caption`.
+/// The text with the caption of each picture below it, as the built manual shows it: a picture that is a paragraph
+/// (with or without a comment) is followed by its caption in a paragraph of the class `caption`.
 pub fn captioned(text: &str) -> String {
-    let mut captioned = String::new();
-    let mut is_code = false;
-    for paragraph in text.split("\n\n") {
-        if !captioned.is_empty() {
-            captioned.push_str("\n\n");
+    let mut captioned = text.to_owned();
+    for PlacedLink { whole, target, paragraph, .. } in placed_links(text).into_iter().rev() {
+        let after = text.get(whole.end..paragraph.end).unwrap_or_default().trim_end();
+        let is_alone = after.is_empty() || after.trim_start().starts_with("<!--") && after.ends_with("-->");
+        if is_alone && whole.start == paragraph.start && text[whole.clone()].starts_with('!') {
+            let caption = &text[whole.start + 2..target.start - 2];
+            let below = format!("\n\n<div class=\"caption\">\n\n{caption}\n\n</div>\n");
+            captioned.insert_str(whole.end + after.len(), &below);
         }
-        captioned.push_str(paragraph);
-        if !is_code && let Some(caption) = sole_caption(paragraph) {
-            captioned.push_str(&format!("\n\n<div class=\"caption\">\n\n{caption}\n\n</div>\n"));
-        }
-        let fences = paragraph.lines().filter(|line| line.trim_start().starts_with("```")).count();
-        is_code ^= fences % 2 == 1;
     }
     captioned
-}
-
-/// The caption of a paragraph that is one picture, with or without a comment.
-fn sole_caption(paragraph: &str) -> Option<&str> {
-    let (caption, rest) = paragraph.trim().strip_prefix("![")?.split_once("](")?;
-    let (_, after) = rest.split_once(')')?;
-    let is_comment = after.trim().is_empty() || after.trim().starts_with("<!--") && after.trim().ends_with("-->");
-    is_comment.then_some(caption)
 }
 
 /// Numbers of the equations of a chapter, as its `\tag{...}` give them.

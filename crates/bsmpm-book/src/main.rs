@@ -10,11 +10,11 @@
 //! | folder | the page of its `README.md`, or else a list of its files |
 //! | picture or other binary file | `files/PATH`, or its place within the chapters |
 //!
-//! A link to a file that does not exist is reported and kept.
+//! A link of a chapter to a file that does not exist is an error.
 #![forbid(unsafe_code)]
 
-use bsmpm_book::{Chapter, Link, anchor, captioned, chapters, links, normalised, prose, relinked, repository, source};
-use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
+use bsmpm_book::{Chapter, Link, anchor, captioned, chapters, events, links, normalised, relinked, repository, source};
+use pulldown_cmark::{CowStr, Event, Tag, TagEnd, html};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -39,7 +39,7 @@ fn main() -> ExitCode {
 
 /// Writes the sources of the built manual.
 fn write_sources(destination: &Path) -> io::Result<()> {
-    let manual = Manual::read()?;
+    let manual = Manual::read(chapters()?)?;
     manual.write_chapters(destination)?;
     manual.write_files(destination)
 }
@@ -57,15 +57,14 @@ struct Manual {
 }
 
 impl Manual {
-    /// Reads the chapters and collects what they link to.
-    fn read() -> io::Result<Manual> {
+    /// Collects what the chapters link to.
+    fn read(chapters: Vec<Chapter>) -> io::Result<Manual> {
         let repository = repository();
         let source = source().strip_prefix(&repository).map_err(io::Error::other)?.to_path_buf();
-        let chapters = chapters()?;
         let mut manual = Manual { repository, source, chapters, files: BTreeSet::new(), binaries: BTreeSet::new() };
         for chapter in manual.chapters.clone() {
             let page = manual.source.join(&chapter.file);
-            manual.collect_files(&page, &chapter.text);
+            manual.collect_files(&page, &chapter.text)?;
         }
         for file in manual.files.clone().iter().filter(|file| is_markdown(file)) {
             let text = fs::read_to_string(manual.repository.join(file))?;
@@ -75,17 +74,18 @@ impl Manual {
     }
 
     /// Collects the files that a chapter links to.
-    fn collect_files(&mut self, page: &Path, text: &str) {
+    fn collect_files(&mut self, page: &Path, text: &str) -> io::Result<()> {
         for link in internal_links(text) {
             let path = self.linked_file(page, &link);
             if !self.repository.join(&path).exists() {
-                eprintln!("{}:{}: no file {}", page.display(), link.line, link.target);
+                return Err(io::Error::other(format!("{}:{}: no file {}", page.display(), link.line, link.target)));
             } else if self.is_binary(&path) {
                 self.binaries.insert(path);
             } else if !self.is_chapter(&path) {
                 self.files.insert(path);
             }
         }
+        Ok(())
     }
 
     /// Collects the pictures of a Markdown file outside of the manual.
@@ -132,12 +132,7 @@ impl Manual {
         write(&destination.join("SUMMARY.md"), &fs::read_to_string(source().join("SUMMARY.md"))?)?;
         for chapter in &self.chapters {
             let page = self.source.join(&chapter.file);
-            let text = relinked(&chapter.text, |link| match self.place(&self.linked_file(&page, link)) {
-                Some(place) if !link.is_external() && !link.path().is_empty() => {
-                    relative_link(Path::new(&chapter.file), &place, link)
-                }
-                _ => link.target.clone(),
-            });
+            let text = relinked(&chapter.text, |link| self.target(&page, link).unwrap_or_default());
             write(&destination.join(&chapter.file), &captioned(&text))?;
         }
         Ok(())
@@ -147,7 +142,7 @@ impl Manual {
     fn write_files(&self, destination: &Path) -> io::Result<()> {
         for path in &self.files {
             let Some(place) = self.place(path) else { continue };
-            let content = self.content(path, &place)?;
+            let content = self.content(path)?;
             write(&destination.join(&place), &file_page(path, &place, &content))?;
         }
         for path in &self.binaries {
@@ -160,26 +155,55 @@ impl Manual {
     }
 
     /// A file as HTML.
-    fn content(&self, path: &Path, place: &Path) -> io::Result<String> {
+    fn content(&self, path: &Path) -> io::Result<String> {
         let full_path = self.repository.join(path);
         if full_path.is_dir() {
             return Ok(preformatted(&list_of_files(&full_path)?));
         }
         let text = fs::read_to_string(full_path)?;
-        if !is_markdown(path) {
-            return Ok(preformatted(&text));
-        }
-        Ok(formatted(&relinked(&text, |link| {
-            if link.is_external() || link.path().is_empty() {
-                return link.target.clone();
+        Ok(if is_markdown(path) { self.formatted(path, &text) } else { preformatted(&text) })
+    }
+
+    /// A Markdown file as HTML. Headings get their anchors; links to a file without a place become text.
+    fn formatted(&self, path: &Path, markdown: &str) -> String {
+        let mut shown = Vec::new();
+        let mut is_dropped = false;
+        for (mut event, range) in events(markdown) {
+            match &mut event {
+                Event::Start(Tag::Heading { id, .. }) => *id = Some(CowStr::from(anchor(&markdown[range]))),
+                Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => {
+                    let target = self.target(path, &Link::at(markdown, range.start, dest_url));
+                    *dest_url = CowStr::from(target.unwrap_or_default());
+                }
+                _ => {}
             }
-            let linked = self.linked_file(path, link);
-            let target = self.place(&linked).map(|target| {
-                // Of a chapter, mdBook makes a page.
-                if self.is_chapter(&linked) { target.with_extension("html") } else { target }
-            });
-            target.map_or_else(String::new, |target| relative_link(place, &target, link))
-        })))
+            if let Event::Start(Tag::Link { dest_url, .. }) = &event {
+                is_dropped = dest_url.is_empty();
+            }
+            let is_link = matches!(event, Event::Start(Tag::Link { .. }) | Event::End(TagEnd::Link));
+            if !(is_link && is_dropped) {
+                shown.push(event);
+            }
+        }
+        let mut page = String::new();
+        html::push_html(&mut page, shown.into_iter());
+        page
+    }
+
+    /// Target of a page's link in the built manual; none if the linked file has no place there.
+    fn target(&self, page: &Path, link: &Link) -> Option<String> {
+        if link.is_external() || link.path().is_empty() {
+            return Some(link.target.clone());
+        }
+        let linked = self.linked_file(page, link);
+        let mut place = self.place(&linked)?;
+        // Of a chapter, mdBook makes a page, and it changes the links of chapters itself.
+        if self.is_chapter(&linked) && !self.is_chapter(page) {
+            place.set_extension("html");
+        }
+        let depth = self.place(page)?.components().count() - 1;
+        let anchor = if link.anchor().is_empty() { String::new() } else { format!("#{}", link.anchor()) };
+        Some(format!("{}{}{anchor}", "../".repeat(depth), place.display()))
     }
 }
 
@@ -196,38 +220,6 @@ fn internal_links(text: &str) -> impl Iterator<Item = Link> {
 
 fn is_markdown(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "md")
-}
-
-/// Path from one place in the manual to another, with the anchor of the link.
-fn relative_link(from: &Path, place: &Path, link: &Link) -> String {
-    let depth = from.components().count() - 1;
-    let anchor = if link.anchor().is_empty() { String::new() } else { format!("#{}", link.anchor()) };
-    format!("{}{}{anchor}", "../".repeat(depth), place.display())
-}
-
-/// Markdown as HTML. Headings get their anchors; links without a target become text.
-fn formatted(markdown: &str) -> String {
-    let mut with_anchors = String::new();
-    for (line, prose_line) in markdown.lines().zip(prose(markdown).lines()) {
-        with_anchors.push_str(line);
-        if prose_line.starts_with('#') {
-            with_anchors.push_str(&format!(" {{#{}}}", anchor(line)));
-        }
-        with_anchors.push('\n');
-    }
-    let mut is_dropped = false;
-    let options = Options::ENABLE_TABLES | Options::ENABLE_HEADING_ATTRIBUTES;
-    let events = Parser::new_ext(&with_anchors, options).filter(|event| match event {
-        Event::Start(Tag::Link { dest_url, .. }) => {
-            is_dropped = dest_url.is_empty();
-            !is_dropped
-        }
-        Event::End(TagEnd::Link) => !is_dropped,
-        _ => true,
-    });
-    let mut page = String::new();
-    html::push_html(&mut page, events);
-    page
 }
 
 /// Text as HTML, as it is.
@@ -264,4 +256,29 @@ fn file_page(path: &Path, place: &Path, content: &str) -> String {
 fn write(path: &Path, text: &str) -> io::Result<()> {
     fs::create_dir_all(path.parent().unwrap_or(path))?;
     fs::write(path, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_link_of_a_written_chapter_leads_to_a_written_file() {
+        let directory = tempfile::tempdir().unwrap();
+        write_sources(directory.path()).unwrap();
+        for chapter in chapters().unwrap() {
+            let page = directory.path().join(&chapter.file);
+            for link in internal_links(&fs::read_to_string(&page).unwrap()) {
+                let target = page.parent().unwrap().join(link.path());
+                assert!(target.is_file(), "{}:{}: {}", chapter.file, link.line, link.target);
+            }
+        }
+    }
+
+    #[test]
+    fn a_missing_file_is_an_error() {
+        let chapter = Chapter { file: "index.md".to_owned(), text: "# Start\n\n[a](none.md)\n".to_owned() };
+        let fault = Manual::read(vec![chapter]).err().unwrap().to_string();
+        assert!(fault.ends_with("index.md:3: no file none.md"), "{fault}");
+    }
 }
