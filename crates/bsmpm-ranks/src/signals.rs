@@ -1,11 +1,12 @@
-//! Handles signals to any rank, on all ranks.
+//! Handles operating-system signals: a signal to one rank acts on all.
 //!
 //! SIGUSR1, SIGTERM and SIGINT stop the run at the last converged state. A second SIGTERM or SIGINT ends the run at
 //! once. SIGUSR2 writes a frame and a checkpoint.
 
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
-use signal_hook::flag;
+use signal_hook::{flag, low_level};
 use std::cell::Cell;
+use std::ffi::c_int;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -28,10 +29,7 @@ impl Requests {
     pub fn of_signals() -> io::Result<Self> {
         let (requests, ending) = (Self::default(), Arc::new(AtomicBool::new(false)));
         for signal in [SIGTERM, SIGINT] {
-            // In this order: the first signal finds `ending` unset, the second one does what it does to any program.
-            flag::register_conditional_default(signal, Arc::clone(&ending))?;
-            flag::register(signal, Arc::clone(&ending))?;
-            flag::register(signal, Arc::clone(&requests.stop))?;
+            register_ending(signal, Arc::clone(&ending), Arc::clone(&requests.stop))?;
         }
         flag::register(SIGUSR1, Arc::clone(&requests.stop))?;
         flag::register(SIGUSR2, Arc::clone(&requests.save))?;
@@ -68,6 +66,20 @@ impl Requests {
     pub fn take_save(&self) -> bool {
         self.save_agreed.take()
     }
+}
+
+/// Lets the first SIGTERM or SIGINT set `stop`, and the second one do what it does to any program. One atomic operation
+/// decides which signal is the first, because two threads may handle two signals at the same time.
+#[allow(unsafe_code)]
+fn register_ending(signal: c_int, ending: Arc<AtomicBool>, stop: Arc<AtomicBool>) -> io::Result<()> {
+    let handle = move || {
+        if ending.swap(true, Ordering::SeqCst) {
+            let _ = low_level::emulate_default_handler(signal);
+        }
+        stop.store(true, Ordering::SeqCst);
+    };
+    // SAFETY: Atomic stores and `emulate_default_handler` are async-signal-safe.
+    unsafe { low_level::register(signal, handle) }.map(drop)
 }
 
 #[cfg(test)]
