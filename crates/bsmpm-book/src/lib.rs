@@ -1,35 +1,35 @@
 //! The manual of bsmpm. Its chapters are the Markdown files in this folder, in the order of `SUMMARY.md`.
-//! `scripts/book` builds the manual with mdBook and runs its commands. This library reads the manual for the tests, for
-//! `examples/walk.rs` and for the build (`main.rs`).
+//! `scripts/book` builds the manual with mdBook. This library parses the chapters for the tests, for the build
+//! (`main.rs`) and for `examples/walk.rs`, which executes all commands of the manual.
 //!
 //! # Fenced blocks
 //!
-//! The words after the fence say what a block is. They are separated by commas.
+//! The words after an opening fence, separated by commas, say what the block contains.
 //!
 //! | fence | meaning |
 //! | --- | --- |
-//! | `toml,file=NAME`, `python,file=NAME` | The file NAME of the reader. A `toml` file is a complete case. |
-//! | `toml,append=NAME` | Text that is appended to NAME, which stays a complete case. |
-//! | `toml,wrong` | A case with an error, besides `file=` or `append=`. |
-//! | `toml,coarse=KEY:VALUE` | In a coarse run, the line `KEY = ...` of this block is `KEY = VALUE`. May be repeated. |
-//! | `sh` | Commands of the reader. They end with code 0. |
+//! | `toml,file=NAME`, `python,file=NAME` | The file NAME, which the reader writes. A `toml` file is a complete case. |
+//! | `toml,append=NAME` | Text that the reader appends to NAME, which remains a complete case. |
+//! | `toml,wrong` | A case with an intended error; also has `file=` or `append=`. |
+//! | `toml,coarse=KEY:VALUE` | A fast check uses `KEY = VALUE` in this block. May be repeated. |
+//! | `sh` | Commands of the reader, which end with code 0. |
 //! | `sh,exit=N` | Commands that end with code N. |
-//! | `sh,not-run` | Commands that cannot run in a check. They are counted and listed. |
-//! | `text,output` | Lines that the commands before it print, among others; `...` matches anything within a line. |
-//! | `text,output,full` | As `text,output`, but compared in a full run only: a coarse run prints other numbers. |
-//! | `rust` | Compiled and run as a doctest of this crate. |
+//! | `sh,not-run` | Commands that a check lists but cannot execute. |
+//! | `text,output` | Lines that the preceding commands print, among others; `...` matches any text within a line. |
+//! | `text,output,full` | As `text,output`, but not compared in a fast check. |
+//! | `rust` | Compiled and executed as a doctest of this crate. |
 //!
-//! Each tutorial begins in an empty directory with the repository's `cases/`. All
-//! other chapters share one such directory, in the order of the manual.
+//! The fast check is `scripts/book --check`; `scripts/book --full` uses the cases as printed. Each tutorial begins in
+//! an empty directory with the repository's `cases/`. All other chapters share one such directory.
 //!
 //! # Links and pictures
 //!
-//! A link is the path of a file, relative to the page, so that it works where the repository is browsed. In the built
-//! manual, a link to a file of the repository leads to a page with a copy of that file.
+//! A link is the path of a file relative to the page, so that it works where the repository is browsed. In the HTML
+//! manual, a link to a file of the repository leads to a page with a copy of this file.
 //!
-//! A picture that the commands of its chapter draw is followed by a comment with the path that they write:
-//! `![caption](../pictures/tutorials/slope.png)<!-- slope.out/strain.png -->`. A coarse run checks that this file was
-//! written. A full run also copies it to the place that the link names.
+//! After a picture that commands of the chapter draw, a comment names the file that they write:
+//! `![caption](../pictures/tutorials/slope.png)<!-- slope.out/strain.png -->`. A fast check verifies that this file was
+//! written. `scripts/book --full` also copies it to the path of the picture.
 //!
 //! # Equations
 //!

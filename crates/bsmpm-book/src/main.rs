@@ -1,14 +1,15 @@
-//! Writes the sources of the built manual, from which mdBook makes the HTML: `bsmpm-book DIRECTORY`.
+//! Writes the sources from which mdBook makes the HTML manual: `bsmpm-book DIRECTORY`. `scripts/book` starts this
+//! program.
 //!
-//! The chapters are copied. Where they link to a file of the repository, the built manual gets a page with a copy of
-//! that file, so that the link works without the repository:
+//! The chapters are copied. Each file of the repository that a chapter links to gets a copy in the HTML manual, so that
+//! the link works without the repository:
 //!
-//! | linked | in the built manual |
+//! | file | copy |
 //! | --- | --- |
-//! | Markdown | a page in `files/`, formatted; its own links work if they lead to a file that has a page |
-//! | other text | a page in `files/`, as it is |
+//! | Markdown | a formatted page in `files/`; its links work if their targets have pages, too |
+//! | other text | a page in `files/` with the unchanged text |
 //! | folder | the page of its `README.md`, or else a list of its files |
-//! | picture or other binary file | `files/PATH`, or its place within the chapters |
+//! | picture or other binary file | `files/PATH`; for pictures of the manual, their path in the manual |
 //!
 //! A link of a chapter to a file that does not exist is an error.
 #![forbid(unsafe_code)]

@@ -1,5 +1,5 @@
-//! Tests that the manual's page of closed-form tests (`verification/tests.md`) lists every such test with its source
-//! and file. `BSMPM_RENEW=1 cargo test -p bsmpm-book --test tests_page` writes the page again.
+//! Tests that the manual's page of closed-form tests (`verification/tests.md`) lists each of these tests with its
+//! source and file. `BSMPM_RENEW=1 cargo test -p bsmpm-book --test tests_page` writes this page again.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
-//! Fuzz targets: functions that pass arbitrary bytes to parts of the program. No input may cause a panic or a number
+//! Fuzz targets: functions that pass arbitrary bytes to one part of the program. No input may cause a panic or a number
 //! that is not finite.
 //!
-//! `tests/replay/main.rs` runs all targets on stored inputs (corpora); `scripts/fuzz` lets libFuzzer search for new
-//! inputs.
+//! `tests/replay/main.rs` executes all targets on stored inputs (corpora). `scripts/fuzz` searches for new inputs with
+//! libFuzzer.
 #![forbid(unsafe_code)]
 // As in `bsmpm`: N, dN and F are what the paper calls so.
 #![allow(non_snake_case)]

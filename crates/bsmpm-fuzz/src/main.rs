@@ -1,4 +1,4 @@
-//! Runs one fuzz target on files: `bsmpm-fuzz TARGET FILE...`. `scripts/fuzz` builds this program with libFuzzer.
+//! Passes files to one fuzz target: `bsmpm-fuzz TARGET FILE...`. `scripts/fuzz` builds this program with libFuzzer.
 #![cfg_attr(fuzzing, no_main)]
 
 #[cfg(fuzzing)]

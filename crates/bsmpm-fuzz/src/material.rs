@@ -1,5 +1,4 @@
-//! Fuzz target of the constitutive laws: the stress after the return mapping, (T4.1) to (T4.3), must lie within the
-//! yield surface.
+//! Fuzz target of the constitutive laws: the stress after the return mapping must not be outside the yield surface.
 
 use crate::draw;
 use arbitrary::{Result, Unstructured};

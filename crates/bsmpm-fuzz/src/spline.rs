@@ -1,4 +1,4 @@
-//! Fuzzes B-splines (T2.1) to (T2.3) on any valid knots.
+//! Fuzzes B-splines on any valid knots.
 
 use crate::draw;
 use arbitrary::{Result, Unstructured};

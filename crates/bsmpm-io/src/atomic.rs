@@ -1,4 +1,4 @@
-//! Replaces a file such that readers always find the old or the new file.
+//! Replaces a file such that readers always find either the old or the new file.
 
 use std::ffi::OsString;
 use std::fs::{self, File};

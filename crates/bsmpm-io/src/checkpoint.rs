@@ -1,5 +1,5 @@
-//! Checkpoints: an HDF5 file with arrays, and a record ([`CheckpointRecord`]) with its size and hash. A checkpoint is
-//! valid after [`Store::commit`].
+//! Checkpoints: an HDF5 file with the state of a run, and a record ([`CheckpointRecord`]) with the size and hash of
+//! this file. [`Store::commit`] writes the record, which makes the checkpoint valid.
 
 mod find;
 mod record;

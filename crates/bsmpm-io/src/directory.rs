@@ -1,5 +1,5 @@
-//! The output directory of a run. The program deletes only files that are listed in the `run.json` of this
-//! directory.
+//! The output directory of a run. If a new run replaces an old one, only files that the old `run.json` lists are
+//! deleted.
 
 use std::fs::{self, Metadata};
 use std::io::{self, ErrorKind};

@@ -1,4 +1,5 @@
-//! Writes the frames of a run (`frames/step_*.vtu`) and their list (`frames.pvd`) on a separate thread.
+//! Writes frames (`frames/step_*.vtu`: all material points at one time) and their list (`frames.pvd`) on a separate
+//! thread.
 
 use std::fs;
 use std::io::Write;

@@ -1,4 +1,5 @@
-//! The file `.lock`, which reserves an output directory for one process. The lock of a dead process is replaced.
+//! The file `.lock`, which reserves an output directory for one process. The lock of a process that no longer exists is
+//! replaced.
 
 mod holder;
 

@@ -1,4 +1,4 @@
-//! CSV tables with one row per step of a run. The second line has units.
+//! CSV tables with one row per step of a run. The second line of a table contains the units.
 
 use std::fs::{self, File};
 use std::io::{Read, Seek, SeekFrom, Write};

@@ -1,4 +1,4 @@
-//! Reads the code of a message. Each message text begins with its code: `W0206: gravity ...`.
+//! Reads the code of a message, such as W0206, from the beginning of the message text.
 
 /// Characters of a code and of the colon and the blank behind it.
 const LENGTH: usize = "E0001".len();

@@ -1,4 +1,4 @@
-//! Tests that each message has a catalogue page, and follows the pattern of messages.
+//! Tests that each message has a catalogue page, and follows the rules for message texts.
 
 use bsmpm_messages::{Kind, Page, code_of, pages, without_code};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,5 +1,5 @@
-//! Writes and reads checkpoints on all ranks. Each rank writes its rows of the arrays; all ranks share one
-//! [`CheckpointState`].
+//! Writes and reads checkpoints. Each rank writes the array rows of its points and nodes; the other data
+//! ([`CheckpointState`]) are the same on all ranks.
 
 mod read;
 mod refusal;

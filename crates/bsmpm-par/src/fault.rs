@@ -1,8 +1,8 @@
 //! Injects faults into a run, for tests. The environment variable `BSMPM_FAULT` selects one:
 //!
-//! - `panic:rank=R,step=N` panics on rank R in step N;
-//! - `kill:phase=P,step=N` kills the rank that writes the checkpoint of step N, in phase P;
-//! - `reject:step=N` repeats the converged step N.
+//! - `panic:rank=R,step=N` causes a panic on rank R in step N;
+//! - `kill:phase=P,step=N` kills the rank that writes the checkpoint of step N, in phase P of writing;
+//! - `reject:step=N` rejects and repeats the converged step N.
 
 use bsmpm_io::checkpoint::Phase;
 

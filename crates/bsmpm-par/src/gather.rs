@@ -1,4 +1,4 @@
-//! Gathers the material points of all ranks on rank 0, in the order of their ids, for a frame.
+//! Gathers the material points of all ranks on rank 0, sorted by id, for a frame.
 
 use bsmpm::material::{Material, Variable};
 use bsmpm::observe::invariants;

@@ -1,5 +1,5 @@
-//! Computes indicators at the end of a run. They show whether the results are reliable. The equations are (T10.4),
-//! (T10.5), (T10.9) and (T10.13) to (T10.16) of the theory manual.
+//! Computes indicators at the end of a run. They show whether the results are reliable. Their definitions are equations
+//! (T10.4), (T10.5), (T10.9) and (T10.13) to (T10.16) of the theory manual.
 
 mod force_noise;
 mod limits;

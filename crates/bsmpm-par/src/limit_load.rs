@@ -1,4 +1,4 @@
-//! Determines limit loads from the history of a limit load analysis.
+//! Determines limit loads from histories at the end of a limit load analysis.
 
 use bsmpm_io::manifest::ManifestLimitLoad;
 use bsmpm_io::table::Columns;

@@ -1,4 +1,4 @@
-//! Writes the log of a run on rank 0 to stderr, for a terminal, a batch job or as JSON.
+//! Writes the log of a run to stderr of rank 0, in a form for terminals, for batch jobs, or as JSON.
 
 use crate::cli::{Arguments, LogFormat, ProgressForm};
 use crate::launch;

@@ -1,4 +1,4 @@
-//! Compares the estimated memory of a case with `--max-memory` and the host's memory.
+//! Compares a case's estimated memory with `--max-memory` and the host's memory before a run.
 
 use crate::cli::Arguments;
 use crate::launch::{complain, say};

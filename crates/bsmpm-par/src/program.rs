@@ -1,4 +1,4 @@
-//! Prepares a run from the command line. Nothing is written before all checks have passed.
+//! Prepares a run from the command line. Files are written only after all checks have passed.
 
 mod begin;
 

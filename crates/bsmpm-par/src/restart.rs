@@ -1,4 +1,4 @@
-//! Decides whether a run begins or continues, and finds the checkpoint to continue from.
+//! Decides whether a run begins or continues, and from which checkpoint it continues.
 
 mod there;
 

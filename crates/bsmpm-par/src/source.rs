@@ -1,4 +1,4 @@
-//! Reads the case file on rank 0; each rank parses it.
+//! Reads the case file on rank 0 and sends it to all ranks.
 
 use crate::cli::Arguments;
 use crate::launch::say;

@@ -1,4 +1,4 @@
-//! Finds whether stderr of this process or `mpirun` is a terminal, for progress lines (Linux only).
+//! Finds whether stderr of this process or `mpirun` is a terminal. If so, progress lines are printed (Linux only).
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{IsTerminal, stderr};

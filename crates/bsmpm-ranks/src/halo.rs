@@ -1,5 +1,5 @@
-//! Adds the nodal contributions of all ranks at nodes that ranks share. They are added by columns of cells, so nodal
-//! sums are bitwise identical on any number of slabs.
+//! Adds the contributions of all ranks to nodes that they share: first within columns of cells, then in the order of
+//! the columns. Nodal sums are therefore bitwise identical on any number of slabs.
 
 use crate::signals::{Requests, WIDTH};
 use crate::slab::{NodeBox, SharedLayer, Slabs, common};

@@ -1,4 +1,4 @@
-//! Assembles linear systems, solves them by PETSc's KSP, and checks residuals.
+//! Assembles linear systems, solves them by PETSc's KSP (Krylov solvers), and checks residuals.
 
 mod choice;
 mod coupled;

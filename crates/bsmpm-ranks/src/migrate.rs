@@ -1,4 +1,4 @@
-//! Moves material points and nodal values between ranks, as a [`plan`](crate::plan) prescribes.
+//! Moves material points and nodal values to their new ranks, as a [`plan`](crate::plan) prescribes.
 
 use crate::plan::{NodePlan, PointPlan};
 use crate::slab::{NodeBox, Slabs};

@@ -1,4 +1,4 @@
-//! Plans which material points and nodal values move to which rank.
+//! Plans which material points and nodal values must move to which rank.
 
 use crate::slab::{NodeBox, Slabs, common};
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! The state of a run on all ranks, with steps, migration and load balance.
+//! The state of a run on all ranks. Makes steps, moves points between ranks, and balances the load.
 
 use crate::halo::MpiHalo;
 use crate::linear::{Choice, Solvers, Tallies};

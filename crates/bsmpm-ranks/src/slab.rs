@@ -1,7 +1,7 @@
 //! Divides the grid into slabs along the first axis, and each slab into parts along the second axis, for the ranks.
 //!
 //! A rank owns its columns of cells and the node layers that begin in these columns. It also stores the next q node
-//! layers (q: degree). They are ghost nodes, except on the last rank.
+//! layers (q: degree), which are ghost nodes (except on the last rank).
 
 use std::ops::Range;
 

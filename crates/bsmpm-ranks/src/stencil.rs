@@ -1,5 +1,5 @@
-//! The stiffness matrix of a rank as node stencils: each node couples with the (2q+1)^D nodes around it (degree q, D
-//! axes). F-bar averages couple more nodes.
+//! The stiffness matrix of a rank, stored as a stencil per node: each node couples with the (2q+1)^D nodes around it
+//! (degree q, D axes), with F-bar averages also with more distant ones.
 
 mod places;
 

@@ -1,4 +1,4 @@
-//! The parsed text of a case: values with their positions, for messages.
+//! The parsed text of a case: values with their positions in the file, for messages.
 
 use crate::error::Origin;
 use crate::report::{Report, shortened};

@@ -1,4 +1,4 @@
-//! Replaces outdated names of keys and options in old case files, and notes each replacement.
+//! Replaces outdated names of keys and options in old case files, and reports each replacement.
 
 use crate::document::{DocumentTable, Node, Value};
 use crate::key_path::join;

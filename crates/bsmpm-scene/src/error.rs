@@ -1,4 +1,4 @@
-//! Data of messages about a case: errors, and values that the program chose.
+//! Data of messages about a case: errors, and values that the program chose itself.
 
 use crate::words::RemovedWord;
 use bsmpm_messages::{code_of, without_code};

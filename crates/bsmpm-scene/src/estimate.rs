@@ -1,4 +1,4 @@
-//! Estimates size and memory of a case before its run, with coefficients fitted to earlier runs.
+//! Estimates unknowns and memory of a case before its run, with coefficients fitted to measurements.
 
 use crate::case::{Body, Case, Linear, Nonlinear};
 use crate::grid::GridSpec;

@@ -1,4 +1,5 @@
-//! The grid of a case. A repeated breakpoint adds no cell here; in `bsmpm` it adds a knot span of zero length.
+//! The grid of a case. A C0 line (repeated breakpoint) adds no cell here; the crate `bsmpm` represents it by a knot
+//! span of zero length.
 
 use bsmpm::tensor::Vector;
 use std::ops::Range;

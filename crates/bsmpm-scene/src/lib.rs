@@ -2,8 +2,7 @@
 //! ## Guarantees
 //!
 //! [`load`] reads the bytes of a case file. [`Case::from_bytes`] turns them into a valid [`Case`], or reports all
-//! errors. The crate does not use MPI and writes no files. Reading a case needs little memory, whatever numbers it
-//! contains.
+//! errors. Reading needs little memory, whatever numbers a case contains.
 #![forbid(unsafe_code)]
 
 #[macro_use]

@@ -1,4 +1,4 @@
-//! Converts a case to types of `bsmpm`: model, material points and step sequence.
+//! Converts a case to the input of the crate `bsmpm`: model, material points and step sequence.
 
 use crate::region::Region;
 use crate::seed::seed_bodies;

@@ -1,4 +1,4 @@
-//! Computes the largest number of ranks that a case can use, and how these ranks divide the grid.
+//! Computes the largest number of ranks that a case can use, and the division of its grid among ranks.
 
 use crate::case::Case;
 use crate::words::Support;

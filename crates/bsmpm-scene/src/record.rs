@@ -1,4 +1,4 @@
-//! Compares a case file with the schema. The result, a record, has typed values in SI units (angles in degrees).
+//! Compares a case file with the schema. The result is a record: typed values in SI units, with angles in degrees.
 
 mod access;
 mod value;

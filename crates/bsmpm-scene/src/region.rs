@@ -1,4 +1,4 @@
-//! The region that a body fills at the start. In two dimensions it is bounded by straight edges and arcs.
+//! The region that a body fills at the start of a run. In two dimensions straight edges and arcs bound this region.
 
 mod cells;
 mod edge;

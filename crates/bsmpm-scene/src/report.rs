@@ -1,4 +1,4 @@
-//! Collects errors, warnings and chosen values of a case, in the order of the case file.
+//! Collects the errors, warnings and chosen values of a case, in the order of the case file.
 
 use crate::error::{Choice, Error, Origin, Place};
 use crate::key_path::join;

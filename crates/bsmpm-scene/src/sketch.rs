@@ -1,4 +1,4 @@
-//! Extracts basic data from the text of a case that may be invalid in this version.
+//! Extracts basic data from the case of an old run, even if this version refuses it.
 
 use crate::case::Support;
 use crate::record::{self, Record};

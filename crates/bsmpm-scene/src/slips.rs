@@ -1,4 +1,4 @@
-//! Reports slips in a case, such as misspelt keys, and corrects them, so that one slip causes one error.
+//! Reports slips in a case, such as misspelt keys. Each slip is corrected, so that it does not cause further errors.
 
 use crate::document::{DocumentEntry, DocumentTable, Node, Value};
 use crate::key_path::join;

@@ -1,4 +1,4 @@
-//! The text of a case file: reading, decoding, lines and columns.
+//! The text of a case file: decodes it, and finds lines and columns.
 
 mod rows;
 mod stl;

@@ -1,8 +1,8 @@
-//! Finds the frequency below which 95 % of the energy of a prescribed motion or load lies, because cells must resolve
-//! it.
+//! Finds the frequency below which 95 % of the energy of a prescribed motion or load lies. Cells must resolve waves of
+//! this frequency.
 //!
-//! The energy of a plane wave is proportional to the square of its velocity. The energies of the Fourier components of
-//! the velocity are summed from the lowest frequency upwards, without the mean.
+//! The energies of the Fourier components of the velocity (without its mean) are summed from the lowest frequency
+//! upwards.
 
 use realfft::RealFftPlanner;
 

@@ -1,4 +1,4 @@
-//! Words that keys of a case accept, such as `"plane-strain"`, as Rust enums with descriptions.
+//! Rust enums of the words that keys of a case accept, such as `"plane-strain"`, with descriptions.
 
 #[macro_use]
 mod define;

@@ -1,4 +1,4 @@
-//! Runs one case with different settings, several runs at a time. Complete runs are reused.
+//! Runs one case with different settings, several runs at a time. Runs that are already complete are reused.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `bsmpm element`: simulates laboratory tests on one material point, by [`bsmpm::element`].
+//! `bsmpm element`: simulates laboratory tests on one material point, with [`bsmpm::element`].
 
 use std::fs;
 use std::io::Write;

@@ -1,5 +1,5 @@
-//! `bsmpm estimate`: predicts the cost of a run (T11.3). The prediction uses trial runs (the first steps, and coarser
-//! versions of the case) or stored coefficients.
+//! `bsmpm estimate`: predicts the cost of a run, theory-manual equation (T11.3), by stored coefficients or trial runs
+//! (the first steps, and the case with coarser cells).
 
 use std::path::PathBuf;
 use std::thread;

@@ -1,7 +1,8 @@
-//! `bsmpm fos`: factor of safety by strength reduction, or critical seismic coefficient, (T9.5) to (T9.7).
+//! `bsmpm fos`: factor of safety by strength reduction, or critical seismic coefficient, theory-manual equations (T9.5)
+//! to (T9.7).
 //!
-//! `search` chooses factors, `trial` makes a run with each factor, and `curve` decides from its displacement whether it
-//! failed.
+//! `search` chooses factors, `trial` runs the case with each factor, and `curve` decides from the displacement whether
+//! the ground failed.
 
 use std::fs;
 use std::path::PathBuf;

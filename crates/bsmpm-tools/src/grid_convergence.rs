@@ -1,4 +1,5 @@
-//! Convergence on three grids: observed order, Richardson extrapolation (T11.4) and grid convergence index (T11.5).
+//! Convergence on three grids: observed order and Richardson extrapolation, theory-manual equation (T11.4), and grid
+//! convergence index (T11.5).
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! Starts `bsmpm-par`, or reuses an unchanged run.
+//! Starts `bsmpm-par`, or reuses a complete run of the same input.
 
 use std::env;
 use std::fs::{self, File};

@@ -1,4 +1,4 @@
-//! `bsmpm limit-load`: limit loads on several grids, and their extrapolation (T9.9).
+//! `bsmpm limit-load`: computes limit loads on several grids and extrapolates them, theory-manual equation (T9.9).
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Fits lines to displacement curves before and after failure, for failure loads.
+//! Fits lines to displacement curves before and after failure, which intersect at the failure load.
 
 /// The branch after failure: from this many times the elastic displacement ..
 pub(crate) const BENT: f64 = 5.0;

@@ -1,4 +1,4 @@
-//! `bsmpm sweep`: error (T11.6) against cost for many settings.
+//! `bsmpm sweep`: error, theory-manual equation (T11.6), against cost for many settings of a case.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

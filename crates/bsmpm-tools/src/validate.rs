@@ -1,7 +1,5 @@
-//! `bsmpm validate`: runs the cases of a validation matrix, and compares their histories with references.
-//!
-//! `matrix` reads the matrix and `check` checks it. `runs` makes the runs. `measure`, `course` and `kink` evaluate
-//! them. `table` and `figure` write the results.
+//! `bsmpm validate`: runs the cases of a validation matrix (a TOML file of studies), and compares their histories with
+//! references.
 
 use std::collections::BTreeMap;
 use std::fs;

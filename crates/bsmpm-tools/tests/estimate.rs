@@ -1,4 +1,4 @@
-//! Tests of `bsmpm estimate` with a stub solver of known cost.
+//! Tests `bsmpm estimate` with a stub in place of the solver.
 
 use std::env;
 use std::fs;

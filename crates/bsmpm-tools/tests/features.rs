@@ -1,4 +1,5 @@
-//! Tests that the table of features in the repository's README agrees with the case reader. `BSMPM_RENEW=1` renews it.
+//! Tests that the table of features in the repository's README agrees with the case reader. `BSMPM_RENEW=1` writes the
+//! table again.
 
 mod features {
     pub mod rows;

@@ -1,5 +1,6 @@
-//! Soft elastic background in all occupied cells (T2.13), for splines with almost no material. It resists the
-//! displacement of one step or, in steady motion, the change of this displacement (T2.14).
+//! Soft background: a fictitious elastic stiffness of all occupied cells, equation (T2.13) of the theory manual,
+//! because some splines contain almost no material. It resists the displacement of a step or, in steady motion, the
+//! change from the last step (T2.14).
 
 mod form;
 mod integrals;

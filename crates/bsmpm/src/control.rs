@@ -1,5 +1,5 @@
-//! Step size control. A failed step is halved; the length is doubled again after two easy steps. Each length is 1/1024
-//! of the nominal step times a power of two, so the nominal end is reached exactly.
+//! Step size control. A failed step is halved; the step size is doubled again after two easy steps. Step sizes are the
+//! nominal one divided by powers of two, so the nominal end is reached exactly.
 
 use crate::background::Resisted;
 use crate::energy::{Budget, Stored};

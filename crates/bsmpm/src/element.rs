@@ -1,8 +1,8 @@
 //! Element test (`bsmpm element`): one material point follows a path of strains and stresses, without inertia and
 //! F-bar.
 //!
-//! The deformation gradient is `F = [[a, γ b, 0], [0, b, 0], [0, 0, c]]` with stretches a, b, c and shear γ. For each
-//! of ln a, ln b, ln c and γ, the value or the Cauchy stress is given. Undrained tests have constant volume.
+//! The deformation gradient is `F = [[a, γ b, 0], [0, b, 0], [0, 0, c]]` with stretches a, b, c and shear γ. Each of ln
+//! a, ln b, ln c and γ is given, or follows from a given Cauchy stress. Undrained tests have constant volume.
 
 use crate::initial;
 use crate::material::{Branch, Material, MaterialError, Response, Separation};

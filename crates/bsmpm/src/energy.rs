@@ -1,5 +1,6 @@
-//! Energy balance of a run (T10.1) to (T10.3), in J or, in plane strain, J per metre. [`Draft`] computes the terms of a
-//! step independently, so the residual (`closure`) is a check. [`Budget`] is the energy bound of dynamic runs.
+//! Energy balance of a run, theory-manual equations (T10.1) to (T10.3), in J (plane strain: J per metre). [`Draft`]
+//! computes each term of a step independently, so a small residual (`closure`) confirms the balance. [`Budget`] is the
+//! energy bound of dynamic runs.
 
 mod budget;
 

@@ -1,5 +1,5 @@
-//! Exact sums of floating-point numbers, bitwise identical in any order. The accumulator is a long row of 64-bit
-//! integers (Kulisch and Miranker, 1986; Neal, 2015).
+//! Exact sums of floating-point numbers, bitwise identical in any order. The accumulator is a long integer of many
+//! 64-bit words (Kulisch and Miranker, 1986; Neal, 2015).
 
 use std::ops::{AddAssign, SubAssign};
 

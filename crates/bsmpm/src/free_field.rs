@@ -1,5 +1,5 @@
-//! Free-field boundaries: before each step, every rank advances a soil column, which drives the nodes of a side
-//! (T6.14), (T6.15).
+//! Free-field boundaries: before each step, every rank advances a soil column, whose stress and velocity act on a side
+//! of the grid, theory-manual equations (T6.14), (T6.15).
 
 mod tied;
 

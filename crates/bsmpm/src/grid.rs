@@ -1,5 +1,5 @@
-//! Grid of cells with tensor-product B-splines. Each rank stores a part (the window). Positions are relative to the
-//! grid's lower corner, to reduce round-off.
+//! Grid of cells with tensor-product B-splines. Each rank stores a part of the grid (its window). Positions are
+//! relative to the grid's lower corner, to reduce round-off.
 
 pub mod contributions;
 pub mod extension;

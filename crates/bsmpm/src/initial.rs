@@ -1,4 +1,5 @@
-//! Initial stress on the drawn geometry (T9.1), (T9.2), and exchange of constitutive laws by stages.
+//! Initial stress on the drawn geometry, theory-manual equations (T9.1), (T9.2); stress after a stage has changed the
+//! constitutive law.
 
 mod settle;
 

@@ -1,5 +1,5 @@
-//! Geometries: plane strain, axisymmetry and 3-D. Each defines gradients, tensors, the exponent of F-bar (T3.2) and
-//! volume factors. No other module distinguishes them.
+//! Geometries: plane strain, axisymmetry and 3-D. Each geometry defines gradients, tensors, volume factors and the
+//! exponent of F-bar, theory-manual equation (T3.2).
 
 mod axisymmetric;
 mod plane_strain;

@@ -1,5 +1,5 @@
-//! Evaluates eight material points at a time by SIMD instructions (SSE2, AVX2 or AVX-512). Results are bitwise
-//! identical, because the width is always eight and multiply-add is not fused.
+//! Evaluates eight material points at a time by SIMD instructions (SSE2, AVX2 or AVX-512), with bitwise identical
+//! results: the width is always eight, and multiply-add is not fused.
 
 use crate::real::Real;
 pub use fearless_simd::Simd;

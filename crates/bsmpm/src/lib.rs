@@ -1,5 +1,5 @@
 #![doc = include_str!("../README.md")]
-//! The algorithm of a step, with the file of each part, is in chapter 1 of the theory manual.
+//! Chapter 1 of the theory manual lists the algorithm of a step, with the file of each part.
 #![forbid(unsafe_code)]
 // The fields of section 2.4 keep the paper's letters (F, dF, J, N) where they have one meaning in mechanics.
 #![allow(non_snake_case)]

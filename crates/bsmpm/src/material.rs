@@ -1,8 +1,8 @@
 //! Constitutive laws (chapter 4 of the theory manual). A law computes the Kirchhoff stress and the new elastic state
-//! from the trial elastic state (T3.3).
+//! from the trial elastic state, theory-manual equation (T3.3).
 //!
-//! All laws are isotropic, use principal Hencky strains (T4.1) and store no state. Stresses are in Pa, tension
-//! positive, in descending order.
+//! All laws are isotropic and use principal Hencky strains (T4.1). State variables are stored at the material points.
+//! Stresses are in Pa, tension positive, in descending order.
 
 mod cam_clay;
 mod drucker_prager;

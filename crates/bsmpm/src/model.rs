@@ -1,4 +1,4 @@
-//! Data that are constant during a run: grid, materials, loads, supports and convergence criteria.
+//! Data that do not change within a stage: grid, materials, loads, supports and convergence criteria.
 
 use crate::background::Background;
 use crate::boundary::Boundary;

@@ -1,5 +1,5 @@
-//! Quantities of histories and profiles (T10.6) to (T10.12): sums, means, maxima, values at positions, run-out front,
-//! stress scatter and section forces.
+//! Quantities of histories and profiles, theory-manual equations (T10.6) to (T10.12): sums, means, maxima, values at
+//! positions, run-out front, stress scatter and section forces.
 
 mod front;
 pub mod interfaces;

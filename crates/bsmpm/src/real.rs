@@ -1,5 +1,4 @@
-//! Number type of formulas that evaluate one point, or eight at a time (SIMD lanes), with bitwise identical results.
-//! Masks replace branches; [`Real::any`] skips operations that no lane needs.
+//! Number type of formulas that evaluate one material point, or eight at a time (SIMD), with bitwise identical results.
 
 use nalgebra::Scalar;
 use std::fmt::Debug;

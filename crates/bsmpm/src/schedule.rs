@@ -1,4 +1,4 @@
-//! End times of the nominal steps, including every output time, and interpolation of time tables.
+//! End times of the nominal steps, which include every output time, and interpolation of tables over time.
 
 use std::ops::{Add, Mul, Sub};
 

@@ -1,5 +1,5 @@
 //! Methods against volumetric locking and stress oscillation (chapter 3 of the theory manual). All except `None` are
-//! F-bar methods (T3.1) to (T3.3). Each group of materials is averaged separately ([`Groups`]).
+//! F-bar methods (T3.1) to (T3.3). Averages do not mix materials of different stiffness ([`Groups`]).
 
 use std::ops::Range;
 

@@ -1,9 +1,9 @@
 //! A small, safe binding of HDF5 for arrays of numbers with checksums. All MPI ranks write and read a file together,
-//! and each rank handles a range of rows. The crate does not interpret the numbers.
+//! and each rank handles a range of rows.
 //!
 //! A file contains only arrays `[rows, width]` in its root group: hard links, little-endian numbers of fixed size,
-//! chunks of 16,384 rows with Fletcher's checksum. A file has no compression and no time stamps, so equal contents give
-//! equal bytes. [`Reader`] rejects any other content before it allocates memory for it.
+//! chunks of 16,384 rows with Fletcher's checksum, no compression and no time stamps. Equal contents give equal bytes.
+//! [`Reader`] rejects other files before it allocates memory.
 //!
 //! All functions of [`Writer`] and [`Reader`] are collective. An error on one rank is an error on all ranks, except
 //! [`Error::Torn`].

@@ -23,8 +23,7 @@
 //! # }
 //! ```
 //!
-//! The crate needs PETSc 3.18 or later with real scalars in double precision. Indices can have 32 or 64 bits. If PETSc
-//! is outside the loader's directories, set `LD_LIBRARY_PATH` at run time.
+//! The crate needs PETSc 3.18 or later with real scalars in double precision. Indices can have 32 or 64 bits.
 
 mod error;
 mod ksp;

@@ -1,6 +1,6 @@
 //! Sparse square matrices, distributed by contiguous rows in the order of the ranks. The sparsity pattern is given
-//! once, as coordinates (COO) or rows (CSR); the values can be replaced any number of times. Sums of repeated
-//! coordinates are bitwise identical in every run on the same number of ranks.
+//! once, as coordinates (COO) or rows (CSR); the values can be replaced any number of times. Values at repeated
+//! coordinates are added, bitwise identically on the same number of ranks.
 
 use std::ops::Range;
 use std::{ptr, slice};

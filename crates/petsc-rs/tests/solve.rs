@@ -1,5 +1,5 @@
-//! Tests of this crate, as one MPI program for any number of ranks. Every rank executes all tests.
-//! `cargo test -p petsc-rs` runs one rank; for more, start the built program with `mpirun -n N`.
+//! Tests of this crate, as one MPI program for any number of ranks. Every rank executes all tests. `cargo test -p
+//! petsc-rs` uses one rank; for more, start the built program with `mpirun -n N`.
 
 mod support;
 

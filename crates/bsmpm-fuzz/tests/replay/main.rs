@@ -1,4 +1,4 @@
-//! Tests that each fuzz target passes on stored inputs (corpora) and random changes of them.
+//! Executes each fuzz target on stored inputs (corpora) and on random changes of these inputs.
 
 mod mutation;
 

@@ -1,4 +1,4 @@
-//! The record of a checkpoint: a JSON file with hashes of the HDF5 file and of itself.
+//! The record of a checkpoint: a JSON file with hashes of the HDF5 file and of itself, to detect damage.
 
 use std::collections::BTreeSet;
 use std::path::Path;

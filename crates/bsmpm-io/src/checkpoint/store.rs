@@ -1,4 +1,4 @@
-//! Writes checkpoints of a run such that after a crash at any time one valid checkpoint remains.
+//! Writes the checkpoints of a run. After a crash at any time, one valid checkpoint remains.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};

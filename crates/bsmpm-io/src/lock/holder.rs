@@ -1,4 +1,4 @@
-//! Identifies the process that locks an output directory, and finds whether it still runs (Linux).
+//! Identifies the process that locked an output directory, and checks whether this process still exists (Linux only).
 
 use std::fmt::{self, Display, Formatter};
 use std::fs;

@@ -1,4 +1,4 @@
-//! Tests that the files of a run are read back with identical bits.
+//! Tests that the files of a run give bitwise identical values when read.
 
 mod checkpoint;
 mod directory;

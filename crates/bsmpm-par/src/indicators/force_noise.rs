@@ -1,4 +1,4 @@
-//! Indicator of scatter in force histories (T10.13).
+//! Indicator of scatter in force histories, theory-manual equation (T10.13).
 
 use bsmpm::model::Regime;
 use bsmpm_io::manifest::Indicator;

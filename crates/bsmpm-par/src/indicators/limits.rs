@@ -1,4 +1,4 @@
-//! Limits of indicators. A run beyond a limit ends with exit code 82.
+//! Limits of indicators. A run with an indicator beyond its limit ends with exit code 82.
 
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;

@@ -1,5 +1,5 @@
-//! Indicator `stiffness-loss` (T10.15): elastic divided by actual second-order work (Hill, 1958). The ratio is 1 in
-//! elastic ground.
+//! Indicator `stiffness-loss`, theory-manual equation (T10.15): second-order work of elastic soil divided by the actual
+//! second-order work (Hill, 1958). It is 1 in elastic soil.
 
 use super::Ledger;
 use crate::indicators::STIFFNESS_LOSS;

@@ -1,4 +1,4 @@
-//! Finds the largest residual forces in a failed step, and suggests remedies.
+//! After a failed step, finds the largest out-of-balance forces, and suggests remedies.
 
 use bsmpm::control::Failure;
 use bsmpm::error::{SolveError, StepError};

@@ -1,5 +1,5 @@
-//! Begins stages. At this time, history rows and frames show the state before the change, checkpoints the state after
-//! it.
+//! Begins a stage, which changes bodies, loads, boundaries or materials. At this time, history rows and frames show the
+//! state before the change, checkpoints the state after it.
 
 use super::Run;
 use crate::launch;

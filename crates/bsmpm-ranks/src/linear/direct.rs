@@ -1,4 +1,5 @@
-//! The direct solver as preconditioner of PETSc's KSP, in single or, if necessary, double precision.
+//! The direct solver as preconditioner of PETSc's KSP. The factor is stored in single or, if a solution is inaccurate,
+//! double precision.
 
 use super::dissection::{Dissection, Precision};
 use super::system::trusted;

@@ -1,8 +1,8 @@
 //! Direct solver: multifrontal Cholesky factorisation (Duff and Reid, 1983) in an order by nested dissection of a box
 //! of nodes.
 //!
-//! Each rank eliminates the unknowns that only its cells touch. Groups of ranks then eliminate the shared unknowns. The
-//! order is fixed, so that runs on the same ranks repeat bitwise.
+//! Each rank eliminates the unknowns that no other rank needs. Groups of ranks then eliminate the shared unknowns. The
+//! order is fixed, so that runs on the same number of ranks are bitwise identical.
 
 mod factor;
 pub(super) mod front;

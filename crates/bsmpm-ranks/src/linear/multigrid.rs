@@ -1,8 +1,8 @@
 //! Multigrid preconditioner over B-spline grids, on one rank.
 //!
-//! A coarser grid has every other breakpoint. The smoother is a Chebyshev polynomial of an additive Schwarz method on
-//! overlapping boxes of 4 nodes along each axis. A box can represent divergence-free fields. Therefore the number of
-//! iterations does not grow with the bulk modulus (de Prenter et al., 2020; Pé de la Riva et al., 2019).
+//! A coarser grid has every second breakpoint. The smoother is a Chebyshev polynomial of an additive Schwarz method on
+//! overlapping boxes of 4 nodes along each axis. The splines of a box can represent divergence-free fields, so the
+//! number of iterations does not grow with the bulk modulus (de Prenter et al., 2020; Pé de la Riva et al., 2019).
 
 mod patches;
 #[cfg(test)]

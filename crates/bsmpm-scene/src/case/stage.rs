@@ -1,4 +1,4 @@
-//! Data of stages of a case, which change bodies, loads, boundaries and materials.
+//! Data of stages. A stage changes bodies, loads, boundaries and materials of a case.
 
 use super::{Body, Case, DrainSite, Face, Gravity, MotionPath, NamedMaterial, Shares, Support, keeps_direction};
 use bsmpm::boundary::{Contact, Idle};

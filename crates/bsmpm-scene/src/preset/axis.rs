@@ -1,4 +1,4 @@
-//! Places the grid lines (breakpoints) of a preset along one axis, equally spaced or graded (T11.1).
+//! Places the grid lines (breakpoints) of a preset along one axis, equally spaced or graded.
 
 /// Parts of a cell by which a place may miss a grid line: rounding.
 pub(super) const ON_LINE: f64 = 1e-6;

@@ -1,5 +1,5 @@
-//! Chooses the cells of a grid for a preset, with fine zones around footings, loads, rigid bodies, openings and
-//! corners.
+//! Chooses the cell sizes for a preset (key `accuracy`), with fine zones around footings, loads, rigid bodies, openings
+//! and corners.
 
 use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};

@@ -1,4 +1,4 @@
-//! Finds openings and re-entrant corners of bodies, where a preset refines cells.
+//! Finds openings and re-entrant corners of bodies. A preset (key `accuracy`) refines cells there.
 
 use super::scene::PresetScene;
 use crate::openings::{self, GridFaces, PlaneBody, PlaneShape};

@@ -1,4 +1,4 @@
-//! Computes the region that a moving rigid body passes through. A preset chooses fine cells there.
+//! Computes the region that a moving rigid body passes through. A preset (key `accuracy`) chooses fine cells there.
 
 use crate::record::Record;
 use crate::region;

@@ -1,4 +1,4 @@
-//! Reads from a case without cells or steps the data from which a preset chooses them (T11.2).
+//! Collects the data of a case from which a preset (key `accuracy`) chooses missing cells and steps.
 
 use super::Preset;
 use super::rigid::{self, RigidExtent};

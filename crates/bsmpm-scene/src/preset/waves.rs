@@ -1,4 +1,4 @@
-//! Limits the cell size of a preset such that cells resolve waves.
+//! Limits the cell size of a preset (key `accuracy`), so that cells resolve waves.
 
 use super::scene::PresetScene;
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! Material points of a body with an outline in one column of cells.
+//! Places the material points of a 2-D body in one column of cells.
 
 use super::edge::Edge;
 use super::reached;

@@ -1,4 +1,4 @@
-//! Terrain between two rasters of heights, with bilinear interpolation.
+//! Terrain between two rasters of heights (top and base), with bilinear interpolation.
 
 use crate::report::brief;
 use bsmpm::boundary::rigid::Terrain;

@@ -1,4 +1,4 @@
-//! Edges of a body that no other body covers.
+//! Finds the surface of a 2-D body: edges that no other body covers.
 
 use super::{Edge, Region};
 use crate::grid::GridSpec;

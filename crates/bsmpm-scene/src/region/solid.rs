@@ -1,4 +1,4 @@
-//! Shapes of 3-D bodies, described by the intervals in which vertical lines are inside.
+//! Shapes of 3-D bodies. Each shape returns the intervals of a vertical line that are inside it.
 
 use super::Edge;
 use super::raster::Raster;

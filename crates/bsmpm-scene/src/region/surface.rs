@@ -1,4 +1,4 @@
-//! A 3-D body bounded by triangles, and the intervals in which vertical lines are inside it.
+//! A 3-D body bounded by triangles. Computes which intervals of vertical lines are inside the body.
 
 use std::collections::{BTreeMap, HashMap};
 

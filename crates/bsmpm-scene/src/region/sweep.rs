@@ -1,4 +1,4 @@
-//! Computes exact areas of body outlines with cut-outs, by vertical slices.
+//! Computes exact areas of body outlines with cut-outs, by division into vertical slices.
 
 use super::edge::{Bulge, Edge};
 

@@ -1,4 +1,5 @@
-//! Converts footings and prescribed segments of a case to surface points, with the penalty stiffness (T6.5).
+//! Converts footings and prescribed segments of a case to surface points, with the penalty stiffness of theory-manual
+//! equation (T6.5).
 
 use super::transition::{self, Neighbour};
 use super::{normal, on_plate, unit};

@@ -1,4 +1,4 @@
-//! Displacement between adjacent footings that move differently (T6.7).
+//! Displacement between adjacent footings that move differently.
 
 use bsmpm::boundary::surface::Attachment;
 use bsmpm::boundary::{MotionShare, Strip, SurfacePoint};

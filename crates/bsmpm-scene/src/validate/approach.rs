@@ -1,4 +1,4 @@
-//! Warns of bodies that approach within a cell. They then share nodes.
+//! Warns of moving bodies that approach within a cell. They then share nodes and act on each other.
 
 use crate::case::{Case, Support};
 use crate::report::{Report, brief};

@@ -1,4 +1,4 @@
-//! Warns of bodies less than a cell apart. They share nodes, and therefore interact.
+//! Warns of bodies less than a cell apart, because they act on each other through shared nodes.
 
 use crate::case::{Body, Case};
 use crate::connected::{near_pairs, pieces_of_pairs};

@@ -1,4 +1,4 @@
-//! Validates grid cells, and moves free faces of the grid outward to whole cells.
+//! Validates grid cells. Moves free faces of the grid outward, so that the grid has whole cells.
 
 use crate::case::Support;
 use crate::estimate::{self, MOST_UNKNOWNS};

@@ -1,4 +1,5 @@
-//! Warns of permanent loads that only absorbing boundaries resist, because the ground then drifts.
+//! Warns of permanent loads that only absorbing boundaries resist: their dashpots carry no static load, so the ground
+//! drifts.
 
 use super::physics::{ALONG, holds_at_rest};
 use super::place::{along, ring};

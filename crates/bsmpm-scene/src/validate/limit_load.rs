@@ -1,4 +1,5 @@
-//! Validates the limit load analysis of a case, and scales its stiffness and displacements (T9.8).
+//! Validates a limit load analysis. Multiplies stiffness and divides displacements by a factor, theory-manual equation
+//! (T9.8), to keep strains small.
 
 use super::site;
 use crate::case::{

@@ -1,4 +1,5 @@
-//! Checks adjacent footings and prescribed segments with different displacements, and refuses contradictory ones.
+//! Checks adjacent footings and prescribed segments with different displacements, and refuses contradictory
+//! displacements.
 
 use super::place::is_in;
 use crate::case::{Acting, Case};

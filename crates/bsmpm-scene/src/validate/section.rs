@@ -1,4 +1,4 @@
-//! Warns of histories of section forces that include part of a load near the section.
+//! Warns of histories of section forces that include a part of a nearby load.
 
 use super::{place, stage};
 use crate::case::{Case, Quantity, RigidShape, RigidSolid};

@@ -1,4 +1,4 @@
-//! Finds the side of a loaded surface on which the bodies lie.
+//! Finds the side of a loaded surface on which the bodies lie, for the direction of pressures.
 
 use super::place::{along, beside, ring, side_of_bodies};
 use super::sheet::middle;

@@ -1,4 +1,4 @@
-//! Refuses keys that do not exist in the geometry of a case (two-dimensional or 3-D).
+//! Refuses keys that do not apply to the geometry (2-D or 3-D) of a case.
 
 use crate::case::{Case, FaceSupport, Support};
 use crate::record::Record;

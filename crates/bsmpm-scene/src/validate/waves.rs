@@ -1,4 +1,4 @@
-//! Chooses the mass matrix, and warns if cells are too large to resolve waves.
+//! Chooses the mass matrix (lumped or consistent), and warns if cells are too large to resolve waves.
 
 use crate::case::{Body, Case, MASS, Support};
 use crate::record::Record;

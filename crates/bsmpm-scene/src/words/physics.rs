@@ -1,4 +1,4 @@
-//! Words that a case accepts for options of the method, such as the mass matrix.
+//! Accepted words for options of the numerical method, such as the mass matrix.
 
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::WallVelocity;

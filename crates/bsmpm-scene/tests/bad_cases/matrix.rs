@@ -1,4 +1,4 @@
-//! Tests that each invalid input of the list `MATRIX` below is refused, or accepted with a warning.
+//! Tests that each invalid input of a list (`MATRIX`) is refused, or accepted with a warning.
 
 use super::{DYNAMIC, Row, STATIC, row, verify};
 use bsmpm_scene::Case;

@@ -1,4 +1,4 @@
-//! Tests that texts which are not cases are refused, and how errors are reported.
+//! Tests that files without a case are refused, and how errors are reported.
 
 use super::{DYNAMIC, STATIC};
 use bsmpm_scene::{Case, Error, MAX_BYTES, Place};

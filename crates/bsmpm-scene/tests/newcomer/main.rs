@@ -1,4 +1,4 @@
-//! Tests of the messages for mistakes of new users that are found without a run.
+//! Tests the messages for mistakes of new users. These mistakes are found before a run starts.
 
 mod rows;
 

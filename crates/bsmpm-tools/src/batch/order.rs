@@ -1,4 +1,4 @@
-//! One run of a batch: the case with its changed keys, and its name.
+//! One run of a batch: the case with its changed keys, and the name of the run.
 
 use std::path::Path;
 

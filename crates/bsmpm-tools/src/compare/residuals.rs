@@ -1,4 +1,4 @@
-//! Draws how one step converges in several runs (as figure 4 of the paper).
+//! Draws how one step converges in several runs (as figure 4 of Xie et al., 2023).
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Writes the curves of several runs as a table with one row per x.
+//! Writes the curves of several runs as a table with one row per value of x.
 
 use super::runs::Runs;
 use crate::picture::axes::label;

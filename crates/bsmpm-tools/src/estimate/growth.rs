@@ -1,5 +1,5 @@
-//! Extrapolates the work of coarser versions to a case. In dynamics, the number of iterations is fitted by a + b/h,
-//! with the cell size h.
+//! Extrapolates the work of coarser versions of a case to the case itself. In dynamics, a + b/h is fitted to the number
+//! of iterations (h: cell size).
 
 use bsmpm_scene::Regime;
 

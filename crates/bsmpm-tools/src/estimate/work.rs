@@ -1,4 +1,4 @@
-//! The work of a run as one number (T11.3).
+//! Combines the work of a run into one number.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! Decides from the curve of displacement against factor whether a trial failed (T9.7).
+//! Decides from the curve of displacement against strength reduction factor whether the ground failed.
 
 use crate::line::{BENT, FALLEN, FittedLine};
 

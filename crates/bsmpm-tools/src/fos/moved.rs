@@ -1,4 +1,4 @@
-//! Displacement by which `bsmpm fos` judges a trial: a block of cells moves at least as far.
+//! Displacement by which `bsmpm fos` judges a trial run: the soil of 2^D cells (D axes) has moved at least as far.
 
 use bsmpm_io::frame::Frame;
 use serde::Serialize;

@@ -1,4 +1,4 @@
-//! Chooses factors: increasing until failure, then refined.
+//! Chooses strength reduction factors for trial runs: increasing until failure, then refined.
 
 use serde::Serialize;
 

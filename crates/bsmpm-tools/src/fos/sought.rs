@@ -1,4 +1,4 @@
-//! The unknown that `bsmpm fos` searches: factor of safety or seismic coefficient.
+//! The quantity that `bsmpm fos` determines: factor of safety or seismic coefficient.
 
 use bsmpm_scene::Case;
 use bsmpm_scene::words::{Geometry, Side};

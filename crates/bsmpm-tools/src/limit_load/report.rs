@@ -1,4 +1,4 @@
-//! Reports loads on all grids, and their extrapolation (T9.9).
+//! Reports limit loads on all grids, and their extrapolation.
 
 use bsmpm_io::manifest::ManifestLimitLoad;
 use bsmpm_messages::headed;

@@ -1,4 +1,4 @@
-//! A picture in memory, [`FINE`] times larger than the saved picture. Lengths are pixels of the saved picture.
+//! A picture in memory, [`FINE`] times larger than the saved picture. Lengths are given in pixels of the saved picture.
 
 use std::io;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Pareto front: settings for which no other setting is both cheaper and more accurate.
+//! Pareto front of a sweep: settings for which no other setting is both cheaper and more accurate.
 
 /// Of pairs of cost and error those to which no other is better in one and as good in the other; of equal ones the
 /// first. None is no result, and neither is a number that is not finite.

@@ -1,4 +1,4 @@
-//! Quantities of a run, and their error (T11.6).
+//! Quantities of a run, and their relative error.
 
 use bsmpm_io::table::Columns;
 

@@ -1,4 +1,4 @@
-//! Computes a factor of safety for a setting of a sweep, in place of a run.
+//! Computes the factor of safety with one setting, for a sweep of factors of safety.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Evaluates one history column over another: where it first reaches a value, and means over an interval.
+//! Evaluates one history column as a function of another: where it first reaches a value, and means over an interval.
 
 /// Relative distance at which two values are the same.
 const SAME: f64 = 1e-9;

@@ -1,4 +1,4 @@
-//! Expands an entry of the validation matrix with a table `each` into one entry per combination of values.
+//! Expands an entry of the validation matrix that has a table `each`: one entry per combination of the listed values.
 
 use toml::{Table, Value};
 

@@ -1,4 +1,4 @@
-//! Draws curves of several runs of a study in one picture, by `bsmpm compare`.
+//! Draws curves of several runs in one picture, with `bsmpm compare`.
 
 use std::collections::BTreeMap;
 use std::path::Path;

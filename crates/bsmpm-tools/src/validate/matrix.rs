@@ -1,4 +1,5 @@
-//! Reads the validation matrix, a TOML file of studies. Unknown keys are errors; `check` finds contradictions.
+//! Reads the validation matrix, a TOML file of studies. Unknown keys are errors; the module `check` finds
+//! contradictions.
 
 use std::collections::BTreeMap;
 use std::fs;

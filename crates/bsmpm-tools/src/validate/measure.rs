@@ -1,4 +1,4 @@
-//! Computes the numbers of the validation table from histories: values, orders of convergence and extrapolations.
+//! Computes numbers of the validation table from histories: values, orders of convergence and extrapolations.
 
 use std::collections::BTreeMap;
 

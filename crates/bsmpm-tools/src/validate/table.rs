@@ -1,4 +1,4 @@
-//! Writes the validation table to the screen, as Markdown by theme, and as CSV.
+//! Writes the validation table to the screen, as Markdown (one section per theme), and as CSV.
 
 use crate::launch::RunCost;
 use crate::report::{Quoted, ReportTable, number, or_dash, some};

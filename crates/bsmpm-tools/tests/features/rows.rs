@@ -1,4 +1,4 @@
-//! Rows of the table of features (`tests/features.rs`), each as lines of a case.
+//! Rows of the table of features (`tests/features.rs`): lines of a case for each feature.
 
 /// A feature as what it adds to a block of soil.
 pub struct Feature {

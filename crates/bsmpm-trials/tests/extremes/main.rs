@@ -1,8 +1,6 @@
 //! Tests of extreme cases. A case passes if its result is within its bound or if the program refuses it.
 //!
-//! `rows.rs` lists the cases with bounds and known failures, and `table.rs` judges and prints them. The other files
-//! measure, by the library `bsmpm` or by complete runs. `cargo test` checks the list only; `--short` and `--full`
-//! measure.
+//! `cargo test` checks only the list of cases (`rows.rs`). The options `--short` and `--full` run the cases.
 
 #![allow(non_snake_case)] // the paper's letters, as in the crate
 

@@ -1,4 +1,4 @@
-//! Cases for the extreme parameters, in any units and with any origin.
+//! Cases with extreme parameters, in any units and with any origin of coordinates.
 
 /// What a metre, a kilogram and a second are, and where the origin lies (m).
 #[derive(Clone, Copy, Debug)]

@@ -1,4 +1,4 @@
-//! Judges and prints a row of the table of extreme cases.
+//! Compares an extreme case with its bounds, and prints the row.
 
 pub use crate::support::driver::Depth;
 use crate::support::driver::{Column, Judged, Verdict, caught, first_line, number, numbers, words};

@@ -1,4 +1,4 @@
-//! Tests of cohesionless soil, of layers with very different stiffness and of any gravity.
+//! Tests of cohesionless soil, of layers with very different stiffness and of very large or small gravity.
 
 use crate::physics::scene::{Scene, axis, by_id, hencky};
 use crate::scenes::{Collapse, RODS, Soil, layers};

@@ -1,4 +1,4 @@
-//! Tests that the program refuses a checkpoint that is damaged or of another case if the user names it, and that
+//! Tests that the program refuses a damaged checkpoint, or one of another case, if the user names it, and that
 //! `--restart auto` skips it.
 
 use crate::ground::{Ground, Trial, spread};

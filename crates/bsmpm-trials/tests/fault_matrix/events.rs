@@ -1,4 +1,4 @@
-//! Tests that the case of the fault tests yields, moves points between ranks and cuts a step.
+//! Tests that in the case of the fault tests soil yields, points move between ranks and a step is shortened.
 
 use crate::ground::{Ground, Trial};
 use crate::support::results::{all_frames, ids, steps};

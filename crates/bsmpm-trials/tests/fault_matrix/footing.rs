@@ -1,4 +1,5 @@
-//! Tests that a strip footing, killed ten times on 2, 3 and 1 ranks, ends like the uninterrupted run.
+//! Tests that the run of a strip footing, killed ten times and continued on 2, 3 and 1 ranks, has the results of an
+//! uninterrupted run.
 
 use crate::ground::{Ground, spread};
 use crate::support::results::{history, manifest};

@@ -1,8 +1,7 @@
 //! Tests of faults: killed ranks, full disks, damaged checkpoints, signals and changed numbers of ranks. After each
-//! fault, the continued run must end like the uninterrupted run, or give the reason.
+//! fault, the continued run must give the results of the uninterrupted run, or the reason why it cannot.
 //!
-//! `rows.rs` lists the faults, `ground.rs` has the case, and `table.rs` judges. The other files cause the faults.
-//! `cargo test` checks the list only; `--short` and `--full` cause the faults.
+//! `cargo test` checks only the list of faults (`rows.rs`). The options `--short` and `--full` cause the faults.
 
 mod apart;
 mod damaged;

@@ -1,4 +1,4 @@
-//! Tests that a converged step can be rejected and repeated without changing the results.
+//! Tests that results do not change if a converged step is rejected and repeated.
 
 use crate::ground::{Ground, results, same};
 use crate::restart::{cases, left};

@@ -1,4 +1,4 @@
-//! Tests that signals and time limits stop a run, which then continues without loss.
+//! Tests that signals and time limits stop a run, and that it continues without changed results.
 
 use crate::ground::{Ground, INTERVAL, results, same, spread};
 use crate::support::Running;

@@ -1,4 +1,4 @@
-//! Tests of steps without a solution: the program shortens the step, and accepts no wrong one.
+//! Tests of steps without a solution: the program shortens the step, and accepts no wrong solution.
 
 use crate::ground::{Ground, RUN};
 use crate::support::Scratch;

@@ -1,4 +1,4 @@
-//! Judges and prints a row of the table of faults.
+//! Checks the outcome of a fault, and prints its row.
 
 use crate::ground::Ground;
 use crate::support::driver::{Column, Depth, Judged, Verdict, caught, first_line, number, numbers, words};

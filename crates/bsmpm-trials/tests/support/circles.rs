@@ -1,4 +1,4 @@
-//! Factors of safety of slip circles; with friction by Bishop's simplified method (1955).
+//! Factors of safety by slip circles; for soil with friction, by Bishop's simplified method (1955).
 
 /// A fill with a straight slope on level clay whose strength grows with depth; m, Pa, N/m3, degrees.
 pub struct Embankment {

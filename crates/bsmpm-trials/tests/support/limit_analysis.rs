@@ -1,9 +1,8 @@
 //! Strict bounds of the limit load of a footing on Tresca clay, by finite-element limit analysis (Sloan, 1988 and 1989;
 //! Makrodimopoulos and Martin, 2006 and 2007).
 //!
-//! In axisymmetry the products of stress and radius r are linear in each triangle. The velocities follow from a
-//! quadratic stream function psi: u = psi_z/r along r and w = -psi_r/r along the axis z, with derivatives as
-//! subscripts.
+//! In axisymmetry the products of stress and radius r are linear in each triangle. Velocities follow from a quadratic
+//! stream function psi: u = psi_z/r along r, w = -psi_r/r along the axis z (subscripts: derivatives).
 
 use super::conic::{Program, Sum};
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Tests of checkpoints that several ranks write, and of killed ranks.
+//! Tests of checkpoints that several ranks write together, and of killed ranks.
 
 use crate::support::processes::{self, Output};
 use crate::support::{Scratch, entries, example};

@@ -1,4 +1,4 @@
-//! Tests that results in cut cells depend neither on the cut nor on steps or ranks.
+//! Tests bodies whose surface cuts cells. Results must not depend on the position of the surface, steps or ranks.
 
 use crate::support::Scratch;
 use crate::support::cases::{changed, slope};

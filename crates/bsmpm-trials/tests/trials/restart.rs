@@ -1,4 +1,4 @@
-//! Tests restarts, which repeat bitwise on the same ranks.
+//! Tests restarts. Continued runs are bitwise identical on the same ranks.
 
 use crate::support::cases::{COLUMN, SLIDING_BLOCK, changed, frictional_block, pressed_block};
 use crate::support::results::{all_frames, differences, history, last_frame, manifest, steps};

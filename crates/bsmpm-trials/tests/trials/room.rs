@@ -1,4 +1,4 @@
-//! Tests that the size of the grid changes neither results nor cost.
+//! Tests that empty cells around the material change neither results nor cost.
 
 use crate::support::cases::{SLIDING_BLOCK, changed};
 use crate::support::results::manifest;

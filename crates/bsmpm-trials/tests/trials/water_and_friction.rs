@@ -1,4 +1,4 @@
-//! Tests that friction acts on the effective normal force, with pore pressure by `ru`.
+//! Tests that friction follows the effective normal force if `ru` gives the pore pressure.
 
 use crate::support::Scratch;
 use crate::support::cases::changed;

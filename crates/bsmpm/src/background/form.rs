@@ -1,4 +1,4 @@
-//! Stiffness matrices of the soft elastic background (T2.13) in single cells.
+//! Stiffness matrices of single cells for the soft background (fictitious stiffness).
 
 use super::integrals::{FormProducts, Integrals};
 use super::tensor::TensorForms;

@@ -1,4 +1,4 @@
-//! Integrals of products of one-dimensional splines, for the stiffness of the soft background (T2.13).
+//! Integrals of products of one-dimensional splines, for the stiffness matrix of the soft background.
 
 use crate::gauss::GAUSS;
 use crate::grid::shape::with_width;

@@ -1,5 +1,5 @@
-//! Multiplies nodal displacements by the artificial background stiffness of the cells (T2.13) in 3-D, for eight cells
-//! at a time.
+//! Multiplies nodal displacements by the fictitious stiffness of the soft background, in 3-D, for eight cells at a
+//! time.
 
 use super::integrals::{Integrals, KINDS};
 use crate::grid::shape::with_width;

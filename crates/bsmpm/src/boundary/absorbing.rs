@@ -1,5 +1,5 @@
-//! Absorbing faces of the grid: nodal dashpots and static forces (T6.11) to (T6.13), (T6.15), in residual and
-//! stiffness.
+//! Absorbing faces of the grid, theory-manual equations (T6.11) to (T6.13), (T6.15): nodal dashpots, and constant nodal
+//! forces that carry static loads, in residual and stiffness.
 
 use super::contact::face_cell;
 use super::{Boundary, Support};

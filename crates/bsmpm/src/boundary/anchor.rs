@@ -1,5 +1,5 @@
-//! Anchors surface points of footings, loads and drains to the nearest material points, which move them after each step
-//! (T6.4).
+//! Anchors surface points of footings, loads and drains to the nearest material points, with which they move after each
+//! step, theory-manual equation (T6.4).
 
 use super::strip::{Strip, displacement, reduce};
 use super::surface::{Anchors, SurfacePoint};

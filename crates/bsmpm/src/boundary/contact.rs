@@ -1,5 +1,5 @@
-//! Frictional contact at the faces of the grid, node by node (T7.1) to (T7.4).
-//! [`solve::contact`](crate::solve::contact) corrects the contact statuses.
+//! Frictional contact at nodes on the faces of the grid, theory-manual equations (T7.1) to (T7.4).
+//! [`solve::contact`](crate::solve::contact) corrects the contact statuses (open, stick, slip).
 
 mod gap;
 mod neutral;

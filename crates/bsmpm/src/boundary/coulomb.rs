@@ -1,4 +1,4 @@
-//! Coulomb's friction law, contact statuses and contact forces (T7.1), (T7.2).
+//! Coulomb's friction law, contact statuses and contact forces, theory-manual equations (T7.1), (T7.2).
 
 use crate::tensor::Vector;
 

@@ -1,5 +1,5 @@
-//! Tractions and point loads. Dead loads (T6.8) are added to the external force at the start of a step; [follower
-//! loads](follower) change during a step.
+//! Tractions and point loads. Dead loads, theory-manual equation (T6.8), are added to the external force at the start
+//! of a step. [Follower loads](follower) change during a step.
 
 pub mod follower;
 

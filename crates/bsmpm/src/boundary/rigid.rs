@@ -1,5 +1,6 @@
-//! Rigid bodies and terrain in frictional contact with material points (T7.7) to (T7.10). Contacts are detected at the
-//! start of a step; [`solve::contact`](crate::solve::contact) corrects their statuses.
+//! Rigid bodies and terrain in frictional contact with material points, theory-manual equations (T7.7) to (T7.10).
+//! Contacts are detected at the start of a step; [`solve::contact`](crate::solve::contact) later corrects their
+//! statuses (open, stick, slip).
 
 mod body;
 mod extent;

@@ -1,10 +1,11 @@
 //! Rigid footings and prescribed segments (`Strip`). A penalty stiffness imposes the displacement; its traction is
-//! stored from step to step (T6.5), (T6.6). A [`StripContact`] permits sliding and separation (T7.5), (T7.6).
+//! stored from step to step, theory-manual equations (T6.5), (T6.6). With a [`StripContact`], soil can slide and
+//! separate (T7.5), (T7.6).
 //!
 //! # Adjacent footings
 //!
 //! Between adjacent footings with different motions, the prescribed displacement is a spline (T6.7). Surface points
-//! there follow both motions in fixed proportions ([`MotionShare`]), and divide their forces in the same proportions.
+//! there follow both motions in fixed proportions ([`MotionShare`]), which also divide their forces.
 
 mod contact;
 mod point;

@@ -1,5 +1,5 @@
-//! Surface points of footings, loads and drains, and their shape functions at nodes (T6.3). All ranks store all surface
-//! points; the rank of the cell computes forces.
+//! Surface points of footings, loads and drains, and their shape functions at nodes, theory-manual equation (T6.3). All
+//! ranks store all surface points; the rank of the cell computes forces.
 
 use super::rigid::RigidState;
 use crate::grid::shape::with_width;

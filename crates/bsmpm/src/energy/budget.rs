@@ -1,5 +1,5 @@
-//! Energy bound of dynamic runs (T10.4): kinetic energy, elastic energy and dissipation must not exceed the initial
-//! energy plus the external work. Created energy that is smaller than earlier numerical losses is not detected.
+//! Energy bound of dynamic runs, theory-manual equation (T10.4): kinetic energy, elastic energy and dissipation must
+//! not exceed the initial energy plus the external work.
 
 use super::Stored;
 use crate::error::StepError;

@@ -1,5 +1,4 @@
-//! Solves a free-field soil column, in which the nodes of a row share one displacement, by a [`Halo`] and a band
-//! solver.
+//! Solves a free-field soil column, in which the nodes of a row share one displacement, with a band solver.
 
 use crate::error::SolveError;
 use crate::exact::Exact;

@@ -1,5 +1,5 @@
-//! Contributions of material points to nodes, stored by column of cells (same index along x). They are added in a fixed
-//! order, so nodal sums are bitwise identical on any number of ranks and threads.
+//! Contributions of material points to nodes, stored by column of cells (cells with the same index along x). They are
+//! added in a fixed order, so nodal sums are bitwise identical on any number of ranks and threads.
 
 use super::Grid;
 use crate::exact::Exact;

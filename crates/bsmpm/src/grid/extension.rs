@@ -1,5 +1,5 @@
-//! Extended B-splines: chooses the full cell to which a function of a nearly empty cell is tied, and its weights
-//! (T2.11). Used by [`step::extension`](crate::step::extension).
+//! Extended B-splines: chooses the full cell to which a spline of nearly empty cells is tied, and its weights,
+//! theory-manual equation (T2.11). Used by [`step::extension`](crate::step::extension).
 
 use super::{Grid, KnotVector};
 

@@ -1,5 +1,5 @@
-//! Splines on pairs of cells, as sums of splines on single cells, by knot insertion (Cohen, Lyche and Riesenfeld,
-//! 1980).
+//! Splines on pairs of cells (for `subgrid-f-bar`), as sums of splines on single cells, by knot insertion (Cohen, Lyche
+//! and Riesenfeld, 1980).
 
 use super::KnotVector;
 use std::ops::Range;

@@ -1,4 +1,5 @@
-//! Active part of the grid: a box of cells around the material points, with a margin. Nodes are stored only there.
+//! Active part of the grid: a box of cells around the material points. Nodes outside this box are not
+//! stored.
 
 use super::{Grid, KnotVector};
 use crate::tensor::Vector;

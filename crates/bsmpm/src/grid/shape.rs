@@ -1,5 +1,4 @@
-//! Shape functions and cells of all material points at the start of a step (T2.1), (T2.2), stored per axis to save
-//! memory.
+//! Shape functions and cells of all material points at the start of a step, stored per axis to save memory.
 
 pub mod merged;
 mod support;

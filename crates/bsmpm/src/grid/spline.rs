@@ -1,5 +1,5 @@
-//! B-splines of degree q in one dimension (T2.1) to (T2.3), on an open knot vector. All q + 1 functions of a cell are
-//! stored, because on a knot a function can vanish while its derivative does not.
+//! B-splines of degree q in one dimension, theory-manual equations (T2.1) to (T2.3), on an open knot vector. All q + 1
+//! functions of a cell are stored, because on a knot a function can vanish while its derivative does not.
 //!
 //! A breakpoint of multiplicity m is followed by m - 1 cells of zero length. Therefore function `a` of cell `c` has the
 //! number `c + a`.

@@ -1,5 +1,5 @@
-//! Transfers between material points and nodes (T2.4) to (T2.6), and internal nodal forces (T5.1). Threads share the
-//! columns of cells.
+//! Transfers between material points and nodes, theory-manual equations (T2.4) to (T2.6), and internal nodal forces
+//! (T5.1). Threads share the columns of cells.
 
 mod patch;
 pub mod scalars;

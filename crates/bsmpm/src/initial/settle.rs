@@ -1,5 +1,5 @@
-//! Brings the initial state to equilibrium with the laws of the materials, by removing the out-of-balance force in
-//! parts (T9.4).
+//! Brings the initial stress to equilibrium with the constitutive laws: removes the out-of-balance force in parts,
+//! theory-manual equation (T9.4).
 
 use super::{Undeformed, b_e_of, set_elastic};
 use crate::error::StepError;

@@ -1,5 +1,5 @@
-//! Drucker-Prager law (T4.8), (T4.9): perfectly plastic, non-associated. The return mapping ends on the cone or its
-//! tip.
+//! Drucker-Prager law, theory-manual equations (T4.8), (T4.9): perfectly plastic, non-associated. Stresses return to
+//! the cone or its tip.
 
 use super::law::{Branch, FRICTIONAL, Law, Projection, Variable, frictional, reduced, split};
 use super::{Elastic, Moduli};

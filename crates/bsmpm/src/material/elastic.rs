@@ -1,4 +1,4 @@
-//! Isotropic elasticity between Hencky strain and Kirchhoff stress (T4.2).
+//! Isotropic elasticity between Hencky strain and Kirchhoff stress, theory-manual equation (T4.2).
 
 use crate::real::{Real, three};
 use crate::tensor::Tensor;

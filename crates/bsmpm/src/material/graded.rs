@@ -1,4 +1,4 @@
-//! Stiffness and strength that vary linearly with the initial depth of a material point, for any law.
+//! Stiffness and strength that vary linearly with the initial depth of a point.
 
 use super::law::MOST_PARAMETERS;
 use super::{Elastic, Material, MaterialError, Response};

@@ -1,4 +1,4 @@
-//! Hencky elasticity: Kirchhoff stress linear in logarithmic strain (T4.2).
+//! The elastic law: Kirchhoff stress linear in logarithmic strain.
 
 use super::law::{Branch, Law, Projection};
 use super::{Elastic, Moduli};

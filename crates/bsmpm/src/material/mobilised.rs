@@ -1,5 +1,4 @@
-//! Mobilised strength of a stress: 1 divided by the strength reduction factor at which the stress reaches the yield
-//! surface.
+//! Mobilised strength: 1 divided by the strength reduction factor at which the stress reaches the yield surface.
 
 use super::Material;
 

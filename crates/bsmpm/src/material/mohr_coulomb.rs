@@ -1,5 +1,5 @@
-//! Mohr-Coulomb and Tresca laws (T4.5) to (T4.7): perfectly plastic, non-associated. All returns have closed forms: to
-//! a face, an edge (principal stresses τ₁ = τ₂ or τ₂ = τ₃) or the apex.
+//! Mohr-Coulomb and Tresca laws, theory-manual equations (T4.5) to (T4.7): perfectly plastic, non-associated. All
+//! return mappings have closed forms.
 
 use super::law::{Branch, FRICTIONAL, Law, Projection, Separation, Variable, frictional, reduced};
 use super::{Elastic, Moduli};

@@ -1,5 +1,5 @@
-//! Dense granular flow μ(I) (T4.17), (T4.18): a cone at constant volume, whose friction coefficient μ increases with
-//! the inertial number I.
+//! Dense granular flow μ(I), theory-manual equations (T4.17), (T4.18): a cone at constant volume, whose friction
+//! coefficient μ increases with the inertial number I.
 
 use super::law::{Branch, Law, Projection, Variable, split};
 use super::{Elastic, Moduli};

@@ -1,4 +1,4 @@
-//! Stress that a constitutive law returns at one point, as principal values and axes.
+//! Stress that a constitutive law returns at one material point, as principal values and axes.
 
 use super::law::Branch;
 use super::spectral::Spectrum;

@@ -1,5 +1,5 @@
-//! Mohr-Coulomb law whose strength depends on plastic strain (T4.11), and optionally on the strain rate (T4.13). The
-//! softening strain of the case is scaled by the shear band width (T4.12).
+//! Mohr-Coulomb law whose strength depends on plastic strain, theory-manual equation (T4.11), and optionally on the
+//! strain rate (T4.13). The shear band width scales the softening strain of the case (T4.12).
 
 use super::law::{Branch, Law, Projection, Variable, reduced, split};
 use super::mohr_coulomb::{Corners, Pyramid, Slopes};

@@ -1,5 +1,5 @@
-//! Eigenvalues and axes of the trial left Cauchy-Green tensor b, and its Hencky strains (T4.1). Eigenvalues are stored
-//! as a nearby number plus a difference, for accuracy near b = I.
+//! Eigenvalues and axes of the trial left Cauchy-Green tensor b, and its Hencky strains, theory-manual equation (T4.1).
+//! Each eigenvalue is stored as a nearby number plus a difference, for accuracy near b = I.
 
 mod solid;
 

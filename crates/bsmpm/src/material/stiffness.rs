@@ -1,5 +1,5 @@
-//! Symmetric positive definite approximation of the tangent at a yielding point (T5.7), for the stiffness matrix
-//! (Higham, 1988).
+//! Symmetric positive definite approximation (Higham, 1988) of the tangent at a yielding material point, theory-manual
+//! equation (T5.7), for the stiffness matrix.
 
 use super::Response;
 use super::law::Branch;

@@ -1,4 +1,4 @@
-//! Consistent spatial tangent of the Kirchhoff stress (T4.4).
+//! Consistent spatial tangent of the Kirchhoff stress, theory-manual equation (T4.4).
 
 use super::Response;
 use crate::tensor::Tensor;

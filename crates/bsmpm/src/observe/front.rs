@@ -1,5 +1,5 @@
-//! Run-out front (T10.8): the farthest material point of the lowest row of cells behind which half a cell is filled.
-//! The filled length ends at a point, so the front does not jump.
+//! Run-out front, theory-manual equation (T10.8): the farthest material point of the lowest row of cells behind which
+//! half a cell is filled.
 
 use crate::grid::Grid;
 use crate::kinematics::Kinematics;

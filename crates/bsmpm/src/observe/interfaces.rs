@@ -1,4 +1,5 @@
-//! Distance that material interfaces moved from their initial grid lines. Strains can jump at C0 lines only.
+//! Distance that material interfaces have moved from their initial grid lines. Strains can jump only at these grid
+//! lines.
 
 use crate::grid::KnotVector;
 use crate::model::Model;

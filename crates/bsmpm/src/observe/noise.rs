@@ -1,5 +1,5 @@
-//! Scatter of the stress between material points: about the average on the grid (T10.9), and about a local plane.
-//! Methods that average over the grid reduce only the first by construction.
+//! Scatter of the stress between material points: about the average on the grid, theory-manual equation (T10.9), and
+//! about a local plane.
 
 use crate::error::StepError;
 use crate::exact::Exact;

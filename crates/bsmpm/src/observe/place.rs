@@ -1,4 +1,5 @@
-//! Values at given positions, from a weighted least-squares plane through nearby material points (T10.7).
+//! Values at given positions, from a weighted least-squares plane through nearby material points, theory-manual
+//! equation (T10.7).
 
 use crate::exact::Exact;
 use crate::grid::Grid;

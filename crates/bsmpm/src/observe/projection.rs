@@ -1,5 +1,5 @@
-//! Projected pressure for output (Telikicherla and Moutsanidis, 2022). It contains no pressure modes that cause no
-//! nodal force.
+//! Projected pressure for output (Telikicherla and Moutsanidis, 2022). Pressure modes that cause no nodal force are
+//! removed.
 
 use super::noise::pressure;
 use crate::error::StepError;

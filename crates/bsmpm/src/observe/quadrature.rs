@@ -1,4 +1,4 @@
-//! Quadrature defect of a cell: the volume of its material points, divided by the cell volume, minus one.
+//! Quadrature defect of a cell: the total volume of its material points divided by the cell volume, minus one.
 
 use crate::exact::Exact;
 use crate::grid::occupied::Occupied;

@@ -1,6 +1,5 @@
-//! Section forces across a line or plane (T10.10) to (T10.12): the virtual work of the stress on a rigid motion of one
-//! side. Nodal forces balance for this motion, so stress scatter has no effect. In axisymmetry only the axial force is
-//! exact.
+//! Section forces across a line or plane, theory-manual equations (T10.10) to (T10.12): the virtual work of the stress
+//! on a rigid motion of one side. Stress scatter has no effect.
 
 use crate::exact::Exact;
 use crate::grid::Grid;

@@ -1,4 +1,5 @@
-//! Eliminates the motions of free rigid bodies from the linear system (T7.10), by the Woodbury formula.
+//! Eliminates the motions of free rigid bodies from the linear system by the Woodbury formula, theory-manual equation
+//! (T7.10).
 
 use crate::boundary::rigid::MOTIONS;
 use crate::error::SolveError;

@@ -1,4 +1,4 @@
-//! Broyden's quasi-Newton direction in product form: (T5.12), and (T5.13) for steps that were shortened.
+//! Broyden's quasi-Newton direction in product form, theory-manual equation (T5.12); for shortened corrections (T5.13).
 
 use crate::parallel::{Halo, dots};
 

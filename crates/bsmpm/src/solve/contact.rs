@@ -1,5 +1,5 @@
-//! Active-set method for contact (T7.1), (T7.2): finds equilibrium with fixed contact statuses, then corrects wrong
-//! statuses.
+//! Active-set method for contact, theory-manual equations (T7.1), (T7.2): finds equilibrium with fixed contact
+//! statuses, then corrects wrong statuses.
 
 use crate::boundary::strip::StripAttachments;
 use crate::error::StepError;

@@ -1,4 +1,4 @@
-//! Convergence criteria (T5.15), (T5.16), and early termination of slow iterations.
+//! Convergence criteria, theory-manual equations (T5.15), (T5.16), and early termination of slow iterations.
 
 use crate::error::{Measures, SolveError, StepError, WorstNode};
 use crate::kinematics::Kinematics;

@@ -1,5 +1,5 @@
-//! Complete derivative of the out-of-balance force for Newton's method (T5.14). The product with a vector is exact; the
-//! matrix contains the F-bar average for `consistent-f-bar` and `subgrid-f-bar` only.
+//! Complete derivative of the out-of-balance force for Newton's method, theory-manual equation (T5.14): exact as a
+//! matrix-vector product, partly approximated as an assembled matrix.
 
 use crate::error::SolveError;
 use crate::grid::transfer;

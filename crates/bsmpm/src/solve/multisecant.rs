@@ -1,5 +1,5 @@
-//! Quasi-Newton direction from all recent secants (T5.10), (T5.11) (Anderson, 1965; Fang and Saad, 2009). Products with
-//! the stiffness K_0 are avoided: for w = K_0^-1 f, K_0 dw is the stored change df of the force.
+//! Quasi-Newton direction from all recent secants, theory-manual equations (T5.10), (T5.11) (Anderson, 1965; Fang and
+//! Saad, 2009).
 
 use crate::exact::Exact;
 use crate::parallel::Halo;

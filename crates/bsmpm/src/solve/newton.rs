@@ -1,4 +1,5 @@
-//! Newton's method with the complete derivative (T5.14), a Krylov solver and a line search, where quasi-Newton stalls.
+//! Newton's method with the complete derivative, theory-manual equation (T5.14), a Krylov solver and a line search.
+//! Used where quasi-Newton stalls.
 
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;

@@ -1,4 +1,4 @@
-//! Quasi-Newton iteration of a step with one factorised stiffness K_0 (T5.10), (T5.12).
+//! Quasi-Newton iteration of a step, with one factorised stiffness K_0.
 
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;

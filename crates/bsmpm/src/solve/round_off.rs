@@ -1,4 +1,4 @@
-//! Round-off of the out-of-balance force at each node. Smaller forces count as balanced.
+//! Round-off of the out-of-balance force at each node. Smaller out-of-balance forces count as zero.
 
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;

@@ -1,4 +1,5 @@
-//! Stability check: rejects elastic quasi-static states with negative second-order work (T5.17).
+//! Stability check: rejects elastic quasi-static states with negative second-order work, theory-manual equation
+//! (T5.17).
 
 use crate::error::StepError;
 use crate::kinematics::Kinematics;

@@ -1,4 +1,5 @@
-//! Finds nodes that only one material touches, for the force criterion of each material (T5.16).
+//! Finds nodes that only one material touches, because the force criterion, theory-manual equation (T5.16), is also
+//! evaluated for each material.
 
 use crate::exact::Exact;
 use crate::grid::Shape;

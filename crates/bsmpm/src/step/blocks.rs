@@ -1,4 +1,5 @@
-//! Assembles parts that the matrices (T5.8) and (T5.14) share: tangent moduli, mass, footings and rigid bodies.
+//! Assembles parts that the matrices of theory-manual equations (T5.8), (T5.14) share: tangent moduli, mass, footings
+//! and rigid bodies.
 
 use crate::error::SolveError;
 use crate::grid::Shape;

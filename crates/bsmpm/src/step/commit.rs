@@ -1,5 +1,5 @@
-//! Updates the material points from the converged state (T2.6), (T2.7), (T3.8), (T4.3). Smoothing (T3.5), (T3.7)
-//! changes the elastic tensor b^e, not the Cauchy stress.
+//! Updates the material points from the converged state, theory-manual equations (T2.6), (T2.7), (T3.8), (T4.3).
+//! Smoothing, (T3.5) or (T3.7), changes the elastic tensor b^e, not the Cauchy stress.
 
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};

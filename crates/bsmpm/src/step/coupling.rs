@@ -1,4 +1,4 @@
-//! Stiffness of the F-bar average: the third term of (T5.8), with the sums (T5.9).
+//! Stiffness of the F-bar average: the third term of theory-manual equation (T5.8), with the sums (T5.9).
 
 use crate::grid::{Contributions, Grid, Shape};
 use crate::model::Model;

@@ -1,5 +1,5 @@
-//! Kelvin-Voigt damping: adds the viscous stress (T5.6) to the stress of the law in each iteration. Changes of the
-//! elastic tensor b^e by smoothing cause no viscous stress.
+//! Kelvin-Voigt damping: adds the viscous stress, theory-manual equation (T5.6), to the stress of the law in each
+//! iteration. Smoothing of the elastic tensor b^e causes no viscous stress.
 
 use crate::material::{MaterialError, Response};
 use crate::model::Model;

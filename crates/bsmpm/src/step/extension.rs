@@ -1,11 +1,12 @@
-//! Extended B-splines (T2.10) to (T2.12): functions of nearly empty cells are tied to functions of full cells.
-//! Functions at footings, prescribed segments and points in contact with rigid bodies are not tied.
+//! Extended B-splines, theory-manual equations (T2.10) to (T2.12): coefficients of splines of nearly empty cells are
+//! tied to (extrapolated from) those of full cells. Splines at footings, prescribed segments and points in contact with
+//! rigid bodies are not tied.
 //!
 //! - [`Extension::extend`] sets the tied displacements.
-//! - [`Extension::reduce`] moves nodal forces of tied functions to the unknowns.
+//! - [`Extension::reduce`] moves nodal forces of tied splines to the unknowns.
 //! - [`reduced_system`](super::reduced_system) forms the matrices E^T K E (T2.12).
 //!
-//! A *published* tie is also used by other ranks. All ranks know it and exchange its displacement and force.
+//! A *published* tie is used by several ranks. All ranks know it and exchange its displacement and force.
 
 use crate::grid::extension::{ExtendedSplines, Homes, Nearness, REACH, weights};
 use crate::grid::{Grid, Shape};

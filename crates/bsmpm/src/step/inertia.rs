@@ -1,4 +1,5 @@
-//! Nodal velocity and acceleration at the start of a step (T2.4), and their integration (T5.3) to (T5.5).
+//! Nodal velocity and acceleration at the start of a step, theory-manual equation (T2.4), and their integration (T5.3)
+//! to (T5.5).
 
 use crate::grid::transfer;
 use crate::points::Points;

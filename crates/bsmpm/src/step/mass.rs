@@ -1,5 +1,5 @@
-//! Mass matrix of the nodes (T2.8): lumped, or a blend of the consistent and the lumped one. The transfer of
-//! velocities and the inertia use the same matrix, because energy would not be conserved otherwise.
+//! Mass matrix of the nodes, theory-manual equation (T2.8): lumped, or a blend of the consistent and the lumped matrix.
+//! The transfer of velocities and the inertia use the same matrix, because two different matrices would create energy.
 
 use crate::grid::{Shape, transfer};
 use crate::nodal::Nodal;

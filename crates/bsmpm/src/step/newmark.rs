@@ -1,4 +1,4 @@
-//! Newmark time integration with optional numerical damping (T5.3) to (T5.5).
+//! Newmark time integration with optional numerical damping, theory-manual equations (T5.3) to (T5.5).
 
 /// Parameters of the family; the paper's are α = 0, β = 1/4, γ = 1/2.
 #[derive(Clone, Copy, Debug, PartialEq)]

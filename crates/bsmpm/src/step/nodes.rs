@@ -1,4 +1,5 @@
-//! Transfer from material points to nodes at the start of a step (T2.4), (T2.5), and choice of the unknowns.
+//! Start of a step: transfer from material points to nodes, theory-manual equations (T2.4), (T2.5), and choice of the
+//! unknowns.
 
 use crate::background::Blocks;
 use crate::boundary::absorbing::Dashpots;

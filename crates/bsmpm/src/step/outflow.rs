@@ -1,4 +1,4 @@
-//! Removal of material beyond outflow faces, after the step.
+//! Removes material beyond outflow faces after a step.
 
 use crate::energy::Stored;
 use crate::exact::Exact;

@@ -1,5 +1,5 @@
-//! Assembles the matrix E^T K E (T2.12) of extended splines. The solver drops rows and columns of tied components; this
-//! module adds them to the functions to which they are tied, with weights e:
+//! Assembles the matrix E^T K E of extended splines, theory-manual equation (T2.12). A tied component is not an
+//! unknown. Its row and column are added to those of the functions to which it is tied, with weights e:
 //!
 //! ```text
 //! (E^T K E)_im = K_im + sum_j e_ij K_jm + sum_k K_ik e_mk + sum_jk e_ij K_jk e_mk.

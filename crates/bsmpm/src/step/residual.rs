@@ -1,4 +1,5 @@
-//! Internal force (T5.1), inertia (T5.3) and out-of-balance force (T5.2), evaluated in each iteration.
+//! Internal force, theory-manual equation (T5.1), inertia (T5.3) and out-of-balance force (T5.2), evaluated in each
+//! iteration.
 
 use crate::exact::Exact;
 use crate::grid::{Contributions, transfer};

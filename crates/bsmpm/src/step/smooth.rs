@@ -1,4 +1,5 @@
-//! Smooths the elastic tensor b^e of the material points after a converged step (T3.5) to (T3.7).
+//! Smooths the elastic tensor b^e of the material points after a converged step, theory-manual equations (T3.5) to
+//! (T3.7).
 
 use crate::exact::Exact;
 use crate::grid::{Shape, transfer};

@@ -1,4 +1,5 @@
-//! Symmetric positive definite stiffness K_0 (T5.7) to (T5.9), assembled at the first guess of a step.
+//! Symmetric positive definite stiffness K_0, theory-manual equations (T5.7) to (T5.9), assembled at the first guess of
+//! a step.
 
 use crate::error::SolveError;
 use crate::grid::shape::{Patch, PatchColumn};

@@ -1,4 +1,5 @@
-//! Deformation of the material points by a nodal displacement (T2.6), with F-bar (T3.2), (T3.3), in each iteration.
+//! Deformation of the material points by a nodal displacement, theory-manual equation (T2.6), with F-bar (T3.2),
+//! (T3.3), in each iteration.
 
 use crate::grid::{Shape, transfer};
 use crate::kinematics::{Gradient, Kinematics};

@@ -1,4 +1,4 @@
-//! Corrects velocities of material points within a cell of a fixed face, after the step (T6.2).
+//! After a step, corrects velocities of material points within a cell of a fixed face, theory-manual equation (T6.2).
 
 use crate::boundary::Support;
 use crate::exact::Exact;

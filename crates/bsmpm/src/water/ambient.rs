@@ -1,4 +1,5 @@
-//! Hydrostatic pressure below a level or phreatic line (T8.2), and its force (T8.3).
+//! Hydrostatic pressure below a water level or phreatic line, theory-manual equation (T8.2), and its nodal force
+//! (T8.3).
 
 use crate::points::Points;
 use crate::schedule::{between, turns};

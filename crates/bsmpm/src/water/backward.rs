@@ -1,4 +1,5 @@
-//! Time integration of pore water flow: second-order backward difference (T8.10), or backward Euler.
+//! Time integration of pore-water flow: second-order backward difference, theory-manual equation (T8.10), or backward
+//! Euler.
 
 use crate::model::{Model, Regime};
 use crate::points::Points;

@@ -1,4 +1,5 @@
-//! Pore pressure that material points carry: r_u, or excess pressure that strength reduction keeps constant (T8.4).
+//! Pore pressure that material points store: ratio r_u, or excess pressure that strength reduction keeps constant. Its
+//! nodal force is theory-manual equation (T8.4).
 
 use crate::boundary::Support;
 use crate::grid::{Contributions, Shape, transfer};

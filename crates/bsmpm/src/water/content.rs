@@ -1,4 +1,4 @@
-//! Water content of a soil (T8.5).
+//! Water content of a soil, theory-manual equation (T8.5).
 
 use crate::water::flow::Soil;
 use crate::water::retention::{Retained, RetainedChange, Retention};

@@ -1,4 +1,4 @@
-//! Volumes of water that drained from or entered the ground.
+//! Volumes of water that left or entered the ground.
 
 /// m3 (per metre in plane strain)  volumes of water, per surface
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,5 +1,5 @@
-//! Drains, seepage faces and inflows on surfaces of bodies (T8.13). They contribute to water balance and pressure
-//! matrix.
+//! Drains, seepage faces and inflows on surfaces of bodies, theory-manual equation (T8.13). They contribute to the
+//! water balance and to the pressure matrix.
 
 use crate::boundary::anchor::turned;
 use crate::boundary::surface::Attachment;

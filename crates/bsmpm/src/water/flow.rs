@@ -1,4 +1,4 @@
-//! Input of flow: soils, permeability (T8.8), drains and inflows.
+//! Input of pore-water flow: soils, permeability, theory-manual equation (T8.8), drains and inflows.
 
 use crate::boundary::SurfacePoint;
 use crate::schedule::{between, turns};

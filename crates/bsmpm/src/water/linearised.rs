@@ -1,7 +1,8 @@
-//! Derivative of the water balance (T8.9), and of the pore pressure in (T8.6), for Newton's method.
+//! Derivatives of the water balance, theory-manual equation (T8.9), and of the pore pressure in (T8.6), for Newton's
+//! method.
 //!
 //! A displacement v and a pressure change `δp` change the volume ratio J, the pressure gradient and the Darcy flux w as
-//! follows. dF is the deformation increment of the step, and l = (grad v) dF^-1:
+//! follows. dF is the deformation gradient of the step, and l = (grad v) dF^-1:
 //!
 //! ```text
 //! δJ = J tr l

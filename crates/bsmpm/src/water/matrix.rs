@@ -1,4 +1,4 @@
-//! Pressure matrix S of the fixed-stress split (T8.17).
+//! Pressure matrix S of the fixed-stress split, theory-manual equation (T8.17).
 
 use crate::error::SolveError;
 use crate::grid::transfer::scalars::{self, MOST_FUNCTIONS};

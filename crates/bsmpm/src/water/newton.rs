@@ -1,5 +1,5 @@
-//! Newton direction of displacements and pore pressures, by FGMRES with the fixed-stress split (T8.16) as
-//! preconditioner.
+//! Newton direction of displacements and pore pressures, by FGMRES with the fixed-stress split, theory-manual equation
+//! (T8.16), as preconditioner.
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;

@@ -1,4 +1,5 @@
-//! Nodal pore pressures at the start of a step: unknowns, prescribed values, stabilisation (T8.11).
+//! Nodal pore pressures at the start of a step: unknowns, prescribed values and stabilisation, theory-manual equation
+//! (T8.11).
 
 use crate::error::StepError;
 use crate::grid::transfer::scalars;

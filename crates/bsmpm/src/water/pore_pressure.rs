@@ -1,4 +1,4 @@
-//! Pore pressure at a position (T8.14), for the effective normal force of friction (T7.2).
+//! Pore pressure at a position, theory-manual equation (T8.14), for the effective normal force of friction (T7.2).
 
 use crate::grid::{Shape, transfer};
 use crate::parallel::Halo;

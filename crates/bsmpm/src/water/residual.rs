@@ -1,4 +1,5 @@
-//! Water balance at the nodes (T8.9), Darcy flux (T8.7), and pore pressure in the Kirchhoff stress (T8.6).
+//! Water balance at the nodes, theory-manual equation (T8.9), Darcy flux (T8.7), and pore pressure in the Kirchhoff
+//! stress (T8.6).
 
 use crate::grid::transfer::scalars;
 use crate::kinematics::{Gradient, Kinematics};

@@ -1,4 +1,4 @@
-//! Retention curve and relative permeability: van Genuchten and Mualem (T8.15), or measured.
+//! Retention curve and relative permeability: van Genuchten and Mualem, theory-manual equation (T8.15), or measured.
 
 mod measured;
 

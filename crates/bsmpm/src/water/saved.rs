@@ -1,4 +1,4 @@
-//! Updates the pore water of the material points after convergence (T8.12), and reports it.
+//! Updates pore pressure and mass of the material points after convergence, theory-manual equation (T8.12).
 
 use crate::exact::Exact;
 use crate::grid::transfer::scalars;

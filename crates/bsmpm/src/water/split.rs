@@ -1,4 +1,5 @@
-//! Solves for displacements and pressures by the fixed-stress split (T8.16): two symmetric positive definite systems.
+//! Solves for displacements and pore pressures by the fixed-stress split, theory-manual equation (T8.16): two symmetric
+//! positive definite systems.
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;

@@ -1,4 +1,4 @@
-//! Hydrostatic pressure, its gradient and the weight of water, which drive flow (T8.7).
+//! Hydrostatic pressure, its gradient and the weight of water, which drive flow, theory-manual equation (T8.7).
 
 use crate::model::{Gravity, Model, Regime};
 use crate::points::Points;

@@ -1,4 +1,5 @@
-//! Ties excess pressures across C0 lines, where splines of one degree below the grid's are discontinuous.
+//! Couples excess pore pressures across C0 lines (repeated breakpoints), where splines of one degree below the grid's
+//! are discontinuous.
 
 use crate::grid::{Grid, KnotVector};
 use crate::parallel::{Halo, LinearSolver};

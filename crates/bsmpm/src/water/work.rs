@@ -1,4 +1,4 @@
-//! Work of the pore water in a step, and dissipation by seepage (T8.18).
+//! Work of the pore water in a step, and dissipation by seepage, theory-manual equation (T8.18).
 
 use crate::exact::Exact;
 use crate::grid::transfer::scalars;

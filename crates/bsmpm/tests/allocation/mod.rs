@@ -1,4 +1,4 @@
-//! Tests that evaluating the residual allocates memory equally often for any number of points.
+//! Tests that the number of memory allocations in a residual evaluation does not depend on the number of points.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::strip::StripAttachments;

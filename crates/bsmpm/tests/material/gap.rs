@@ -1,4 +1,4 @@
-//! Tests that Mohr-Coulomb soil that separated at the apex resists again only when its gap has closed.
+//! Tests Mohr-Coulomb soil that separated at the apex (gap): it resists compression only after the gap has closed.
 
 use super::{mohr_coulomb, respond};
 use bsmpm::material::{Branch, Material, Response};

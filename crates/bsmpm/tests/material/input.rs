@@ -1,4 +1,4 @@
-//! Tests that invalid trial tensors give an error, neither a panic nor a NaN.
+//! Tests that invalid deformation gives an error, neither a panic nor a NaN.
 
 use super::{hencky, mohr_coulomb};
 use bsmpm::material::MaterialError;

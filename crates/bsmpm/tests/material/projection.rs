@@ -1,4 +1,5 @@
-//! Tests that associated returns find the closest point of the yield surface in the energy norm, by brute-force search.
+//! Tests that associated returns find the closest point of the yield surface in the energy norm, by comparison with
+//! brute-force search.
 
 use super::{Branch, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;

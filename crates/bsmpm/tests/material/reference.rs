@@ -1,5 +1,4 @@
-//! Tests of the constitutive laws against an independent implementation, and of limit cases in which two laws must
-//! agree.
+//! Tests of the constitutive laws: an independent implementation, and limit cases in which two laws must agree.
 
 use super::{Branch, Material, difference, hencky, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Tests of the positive definite stiffness at yielding points against the tangent.
+//! Compares the positive definite stiffness at yielding points with the tangent.
 
 use super::{Branch, REGIONS, hencky, mohr_coulomb, respond};
 use crate::random::Random;

@@ -1,4 +1,4 @@
-//! Tests of Broyden's product form (T5.12), (T5.13) against the update of a dense matrix.
+//! Tests of Broyden's product form against the update of a dense matrix.
 
 use crate::support::random::Random;
 use crate::support::solver::Skyline;

@@ -1,4 +1,4 @@
-//! Tests of the volume averages of F-bar, their linearisation, and the filter of the elastic volume strain (T3.7).
+//! Tests of the volume averages of F-bar, their linearisation, and the filter of the elastic volume strain.
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};

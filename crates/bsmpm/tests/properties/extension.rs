@@ -1,4 +1,4 @@
-//! Tests that ties of extended splines preserve linear fields, forces and moments, and bound the condition number.
+//! Tests of extended splines: ties preserve linear fields, forces and moments, and bound the condition number.
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};

@@ -1,4 +1,5 @@
-//! Tests that the volume of Mohr-Coulomb soil equals elastic strain plus gap: `ln J = tr εᵉ + gap` at every point.
+//! Tests that the volume of Mohr-Coulomb soil is elastic strain plus gap (separation at the apex): `ln J = tr εᵉ +
+//! gap`.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::boundary::Support;

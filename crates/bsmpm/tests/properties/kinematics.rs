@@ -1,4 +1,4 @@
-//! Tests of objectivity, F-bar with ratio one, and agreement between geometries.
+//! Tests of objectivity, of F-bar with a factor of one, and that geometries agree.
 
 use crate::support::random::Random;
 use crate::support::scene::hencky;

@@ -1,4 +1,4 @@
-//! Tests that in steady motion the background resists only the change of the displacement.
+//! Tests that in steady motion the soft background resists only changes of the displacement per step.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;

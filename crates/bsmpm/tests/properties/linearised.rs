@@ -1,4 +1,4 @@
-//! Tests of the product with the complete derivative (T5.14) against differences of forces.
+//! Tests of the complete derivative of the forces against finite differences.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};

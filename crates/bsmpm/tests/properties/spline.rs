@@ -1,4 +1,4 @@
-//! Tests of one-dimensional B-splines (T2.1) to (T2.3) against an independent evaluation.
+//! Tests of one-dimensional B-splines against an independent evaluation.
 
 use crate::support::random::Random;
 use bsmpm::grid::KnotVector;

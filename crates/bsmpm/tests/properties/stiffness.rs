@@ -1,4 +1,4 @@
-//! Tests of the factorised stiffness K_0 (T5.8) against the complete derivative.
+//! Compares the factorised stiffness K_0 with the complete derivative.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};

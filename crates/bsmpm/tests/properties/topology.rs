@@ -1,4 +1,4 @@
-//! Tests of node numbers, against figure 1 of the paper, and of a rank's window against the whole grid.
+//! Tests of node numbers, and of a rank's window (part of the grid) against the whole grid.
 
 use crate::support::random::Random;
 use crate::support::scene::axis;

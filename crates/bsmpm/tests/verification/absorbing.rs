@@ -1,4 +1,4 @@
-//! Tests that absorbing faces let plane waves leave, keep soil at rest, and admit ground motion at the base.
+//! Tests that absorbing faces let plane waves leave, do not move soil at rest, and admit ground motion at the base.
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;

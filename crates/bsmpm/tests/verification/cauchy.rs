@@ -1,4 +1,4 @@
-//! Tests that the Cauchy stress remains on the yield surface during large plastic flow (T3.8).
+//! Tests that the Cauchy stress remains on the yield surface during large plastic flow.
 
 use crate::support::scene::{METHODS, Scene, axis};
 use bsmpm::background::Background;

@@ -1,5 +1,5 @@
-//! Tests of a confined column under self-weight. The vertical stress at a material point is the initial weight of the
-//! soil above, at any strain.
+//! Tests of a confined column under self-weight. At any strain, the vertical stress at a point is the initial weight of
+//! the soil above.
 
 use crate::support::scene::{Scene, axis, hencky, rms};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};

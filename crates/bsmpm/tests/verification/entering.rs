@@ -1,4 +1,4 @@
-//! Tests of stress and condition number of a body whose edge extends slightly into a cell.
+//! Tests of a body whose edge extends slightly into a cell: stress and condition number.
 
 use crate::support::scene::{Scene, axis, by_id, hencky};
 use crate::support::solver::Dense;

@@ -2,7 +2,7 @@
 //! Struct. 47, 537-545).
 //!
 //! The square beta² is the smallest non-zero eigenvalue of the problem below, for all displacements u and v of a unit
-//! square with fixed edges. A point p has the weight w. S is the F-bar average.
+//! square with fixed edges. A material point p has the weight w. S is the F-bar average.
 //!
 //! ```text
 //! sum_p w (S div u) div v = beta² sum_p w grad u : grad v with S = A^T W^-1 A w

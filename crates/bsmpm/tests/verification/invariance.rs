@@ -1,5 +1,4 @@
-//! Tests that mirroring, axes, position and units do not change results, and that the soft background changes them
-//! little.
+//! Tests that results do not depend on mirroring, axes, position and units, and depend little on the soft background.
 
 use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
 use bsmpm::background::Background;

@@ -1,4 +1,4 @@
-//! Tests that F-bar prevents locking and stress oscillation of a nearly incompressible body.
+//! Tests that F-bar prevents locking and stress oscillation in nearly incompressible material.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

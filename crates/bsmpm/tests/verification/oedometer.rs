@@ -1,4 +1,5 @@
-//! Tests of uniform confined compression to a stretch l in one step: sigma = M ln(l) / l with the modulus M.
+//! Tests of uniform confined compression to a stretch l in one step: stress sigma = M ln(l) / l with the constrained
+//! modulus M.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;

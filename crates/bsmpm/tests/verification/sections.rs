@@ -1,5 +1,5 @@
-//! Tests of section forces, and of stresses and displacements at given positions: a column under self-weight and a
-//! bent beam.
+//! Tests of section forces, and of stresses and displacements at positions, in a column under self-weight and a bent
+//! beam.
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;

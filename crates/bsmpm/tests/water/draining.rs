@@ -1,4 +1,4 @@
-//! Tests of consolidation of bodies whose drained and loaded surfaces cut cells and move through them.
+//! Tests of consolidation. The drained and loaded surfaces cut cells and move through them.
 
 use super::{M, Plane, at, column, flowing, geometric, run, settlement};
 use crate::support::scene::{axis, hencky};

@@ -1,4 +1,4 @@
-//! Tests of uniform undrained states, and undrained shear to failure.
+//! Tests of undrained soil: uniform states, and shear to failure.
 
 use super::{LOAD_PARTS, M, Plane, at, column, flowing, run};
 use crate::support::scene::axis;

@@ -1,4 +1,4 @@
-//! Tests that friction follows the effective normal force (T7.2), with excess pore pressure.
+//! Tests that with excess pore pressure, friction follows the effective normal force.
 
 use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};

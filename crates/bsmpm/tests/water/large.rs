@@ -1,4 +1,5 @@
-//! Tests of consolidation at large strains, against the method of lines (extrapolated from 200 and 400 cells).
+//! Tests of consolidation at large strains against solutions by the method of lines, extrapolated from 200 and 400
+//! cells.
 
 use super::{DENSITY, M, Plane, WEIGHT, column_of, geometric, run};
 use bsmpm::background::Background;

@@ -1,5 +1,5 @@
 //! Tests of the inf-sup constant of displacements and pore pressures on whole and cut cells (Chapelle and Bathe, 1993),
-//! and of invariance to rotation.
+//! and of flow in a rotated body.
 
 use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};

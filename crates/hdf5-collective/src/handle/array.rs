@@ -1,4 +1,4 @@
-//! Arrays of an open HDF5 file: reads and writes rows, and checks type and storage.
+//! An array of an open HDF5 file: reads and writes rows, and checks type and storage.
 
 use std::ffi::c_int;
 use std::ptr;

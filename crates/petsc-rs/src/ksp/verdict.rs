@@ -1,5 +1,5 @@
-//! Decides whether a solve succeeded. PETSc's functions return success even without convergence, so the reason is
-//! checked here.
+//! Decides whether a solve succeeded. PETSc's functions return success even without convergence, so KSP's convergence
+//! reason is checked here.
 
 use std::ptr;
 

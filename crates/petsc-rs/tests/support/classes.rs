@@ -1,5 +1,5 @@
-//! Tests that each solver reports the right failure for defective linear systems. If a solver reports success, the
-//! residual must show the failure.
+//! Tests that each solver reports the right failure for defective linear systems. If a solver wrongly reports success,
+//! the residual must show the failure.
 
 use crate::{LOCAL, entries, expect, poisson, solver, text, wavy};
 use petsc_rs::{Error, Ksp, Matrix, Petsc, Tolerances, Vector};

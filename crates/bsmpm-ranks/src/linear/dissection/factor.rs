@@ -1,4 +1,5 @@
-//! Stores columns of the Cholesky factor in groups of four, because memory bandwidth limits triangular solutions.
+//! Stores the Cholesky factor in groups of four columns, which makes triangular solutions faster (memory bandwidth
+//! limits them).
 
 /// Columns that are kept, and worked on, together.
 const GROUP: usize = 4;

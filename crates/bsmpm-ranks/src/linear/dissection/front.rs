@@ -1,6 +1,6 @@
-//! Factorises the first columns of a front (a dense matrix of the multifrontal method), and updates the others.
-//! Matrices are column-major; only the lower triangle is used. All processors with fused multiply-add (FMA) give the
-//! same bits.
+//! Partly factorises a front (a dense matrix of the multifrontal method): eliminates the first columns, and updates the
+//! remaining ones. Only the lower triangle is used. All processors with fused multiply-add (FMA) give bitwise identical
+//! results.
 
 use nalgebra::{Dyn, MatrixView, MatrixViewMut};
 

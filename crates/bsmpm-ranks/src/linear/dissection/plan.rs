@@ -1,5 +1,5 @@
-//! Plans the elimination order by nested dissection (George, 1973; Liu, 1992). Separators have q layers of nodes (q:
-//! spline degree).
+//! Plans the elimination order by nested dissection (George, 1973; Liu, 1992). Separators, which split a box of nodes
+//! into independent halves, have q layers of nodes (q: spline degree).
 
 use super::factor;
 use bsmpm::nodal::Nodal;

@@ -1,4 +1,4 @@
-//! Eliminates nodes that ranks share: first between two neighbours, at last between all ranks.
+//! Eliminates nodes that ranks share: first in pairs of neighbouring ranks, then in groups of pairs, and so on.
 
 use super::factor::{self, Factor, Precision};
 use super::front;

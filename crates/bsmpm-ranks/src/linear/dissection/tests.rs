@@ -1,4 +1,4 @@
-//! Tests of the direct solver, with one thread in place of each rank.
+//! Tests of the direct solver. Each rank is replaced by a thread.
 
 mod system;
 

@@ -1,4 +1,4 @@
-//! Eliminates and solves on several threads. The number of threads does not change the results.
+//! Factorises and solves on several threads. The number of threads does not change the results.
 
 use super::factor::{Factor, Room};
 use super::front;

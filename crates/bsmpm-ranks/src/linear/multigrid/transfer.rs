@@ -1,4 +1,4 @@
-//! Transfers nodal values between a grid and the next coarser grid of multigrid.
+//! Transfers nodal values between a grid and the next coarser multigrid level.
 
 use super::Operator;
 use crate::stencil::Stencil;

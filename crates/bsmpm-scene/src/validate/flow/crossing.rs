@@ -1,4 +1,4 @@
-//! Checks drains and inflows for contradictions and capacity.
+//! Checks that drains and inflows do not contradict each other, and that the ground can absorb the inflow.
 
 use crate::case::{Acting, Case, Drain, DrainSite, Face, Flow, LoadedLine, Plate, Site};
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! Warns of interfaces and thin walls across which the grid cannot resolve the change of pore pressure.
+//! Warns of interfaces and thin walls if the grid cannot resolve the change of pore pressure across them.
 
 use crate::case::{Body, Case, Flow, Quantity};
 use crate::grid::GridAxis;

@@ -1,4 +1,4 @@
-//! Refuses combinations with pore-water flow that are not verified.
+//! Refuses options that are not verified for cases with pore-water flow.
 
 use crate::case::{Acting, Body, Case, Drain, DrainSite, Flow, Initial, Stage, Support};
 use crate::grid::GridAxis;

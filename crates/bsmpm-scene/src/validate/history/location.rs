@@ -1,4 +1,4 @@
-//! Validates places, lines, boxes and faces of histories.
+//! Validates the positions, lines, boxes and faces that histories refer to.
 
 use crate::case::Face;
 use crate::grid::GridSpec;

@@ -1,4 +1,4 @@
-//! Places C0 planes between bodies of different stiffness or density in 3-D.
+//! Places C0 planes (repeated breakpoints) between bodies of different stiffness or density in 3-D.
 
 use super::{BESIDE, FoundLine, ROUNDING, UNLIKE, differ, doubt, grid_line, interface_of};
 use crate::case::{Body, Case};

@@ -1,4 +1,4 @@
-//! Warns of tiny bodies and of histories without material.
+//! Warns of tiny bodies and of histories outside all material.
 
 use crate::case::{Body, Case};
 use crate::record::Record;

@@ -1,4 +1,4 @@
-//! Warns of single values that appear to be given in another unit.
+//! Warns of values that are probably given in a wrong unit.
 
 use super::Scale;
 use crate::record::Record;

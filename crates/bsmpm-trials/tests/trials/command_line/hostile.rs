@@ -1,4 +1,4 @@
-//! Tests that hostile or huge input is refused or has no effect.
+//! Tests that malicious or huge input is refused or has no effect.
 
 use crate::support::Scratch;
 use crate::support::cases::{COLUMN, changed};

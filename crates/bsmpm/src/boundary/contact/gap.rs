@@ -1,4 +1,4 @@
-//! Computes the gap between the material and a face of the grid (T7.4).
+//! Computes the gap between the material and a face of the grid, theory-manual equation (T7.4).
 
 use crate::boundary::Boundary;
 use crate::grid::{Grid, Shape};

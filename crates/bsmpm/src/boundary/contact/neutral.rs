@@ -1,5 +1,5 @@
-//! Chooses nodes that stick. If all nodes of a contact face slide outwards, the node where slip changes direction
-//! sticks.
+//! If all nodes of a contact face slide outwards and no equilibrium is found, makes the node stick where the direction
+//! of slip changes.
 
 use super::Contacts;
 use crate::boundary::coulomb::Status;

@@ -1,4 +1,4 @@
-//! A node on a face with contact: status, friction force (T7.3), and correction of the status.
+//! A node on a face with contact: status, friction force, theory-manual equation (T7.3), and correction of the status.
 
 use crate::boundary::coulomb::{Contact, Status, transverse};
 use crate::nodal::Nodal;

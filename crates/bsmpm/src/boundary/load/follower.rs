@@ -1,5 +1,5 @@
-//! Follower loads: pressures on the deformed surface (T6.9), evaluated in each iteration. The stiffness does not
-//! contain their derivative.
+//! Follower loads: pressures on the deformed surface, theory-manual equation (T6.9), evaluated in each iteration. Their
+//! derivative is not part of the stiffness.
 
 use super::Load;
 use crate::boundary::anchor::Anchored;

@@ -1,4 +1,4 @@
-//! Data of a rigid body: position, motion, mass, and forces except those of the soil.
+//! Data of a rigid body: position, motion, mass, and all forces except those of the soil.
 
 use super::outline::Outline;
 use crate::schedule::between;

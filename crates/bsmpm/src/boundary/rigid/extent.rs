@@ -1,4 +1,5 @@
-//! Factor e_p in (T7.7): it scales the distance at which material point p touches a rigid body.
+//! Factor e_p in theory-manual equation (T7.7), which scales the distance at which material point p touches a rigid
+//! body.
 
 use super::ROUNDING;
 use super::RigidContacts;

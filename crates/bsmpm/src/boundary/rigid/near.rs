@@ -1,5 +1,5 @@
-//! Contact detection: material points near a rigid body, their gaps (T7.7), contact positions (T7.8) and stiffness
-//! (T7.9).
+//! Contact detection: material points near a rigid body, their gaps, contact positions and stiffness, theory-manual
+//! equations (T7.7) to (T7.9).
 
 use super::motion::BodyInStep;
 use super::point::{ContactStatus, RigidPoint, along, tangents};

@@ -1,5 +1,5 @@
-//! Chooses material points that stick to a free rigid body. If all points below it slide outwards (quasi-static), the
-//! one with the least slip sticks.
+//! If all material points below a free rigid body slide outwards (quasi-static analysis), makes the point with the
+//! least slip stick.
 
 use super::body::MOTIONS;
 use super::point::{ContactStatus, RigidPoint};

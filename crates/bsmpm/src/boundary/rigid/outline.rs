@@ -1,4 +1,4 @@
-//! Outlines of rigid bodies: distance and normal from a position, area, centroid and moments.
+//! Outlines of rigid bodies: distance and normal for a position; area, centroid and moments of inertia.
 
 use super::terrain::Terrain;
 use crate::tensor::Vector;

@@ -1,4 +1,4 @@
-//! A material point in contact with a rigid body: force (T7.9), friction (T7.3), and correction of the status.
+//! A material point in contact with a rigid body: forces, theory-manual equations (T7.9), (T7.3), and contact status.
 
 use crate::nodal::Nodal;
 use crate::tensor::Vector;

@@ -1,4 +1,4 @@
-//! Contact law of a surface point of a footing that can slide or separate (T7.5), (T7.6).
+//! Contact law of a surface point of a footing that can slide or separate, theory-manual equations (T7.5), (T7.6).
 
 use crate::boundary::coulomb::{Contact, Status, transverse};
 use crate::tensor::Vector;

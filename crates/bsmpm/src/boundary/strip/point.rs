@@ -1,4 +1,4 @@
-//! A surface point of a footing during a step: traction (T6.5) and contribution to the footing's force.
+//! A surface point of a footing during a step: its traction and its contribution to the footing's force.
 
 use super::ContactState;
 use crate::boundary::coulomb::{ContactReport, Status};

@@ -1,5 +1,5 @@
-//! Splines of one degree below the grid's, for the average of `subgrid-f-bar` (T3.4). They are defined on pairs of
-//! cells inside a body, and on single cells at its edges.
+//! Splines for the average of `subgrid-f-bar`, theory-manual equation (T3.4), one degree below those of the grid. They
+//! are defined on pairs of cells inside a body, and on single cells at its edges.
 
 use super::Shape;
 use crate::grid::paired::Paired;

@@ -1,4 +1,4 @@
-//! Transfers and gradients for the material points of one cell, compiled for each instruction set.
+//! Transfers and gradients for the material points of one cell, compiled for each SIMD instruction set.
 
 use super::PatchBlock;
 use crate::grid::shape::PointSupport;
