@@ -13,9 +13,9 @@ pub fn reference() -> String {
     let mut page = Page::default();
     page.line("# Keys of the case file\n");
     page.paragraph(
-        "`bsmpm keys` prints this page from the table with which the program reads case files. A number without a unit is \
-         in SI units, an angle in degrees. A text may give another unit: `\"30 MPa\"`. Each key has its symbol, its \
-         meaning, the values that are allowed, its default and an example.",
+        "This page lists all keys of a case; `bsmpm keys` prints it. A number without a unit is in SI units, an angle in \
+         degrees. A string may have another unit: `\"30 MPa\"`. Each key has its symbol, its meaning, the allowed \
+         values, its default and an example.",
     );
     page.units();
     let mut described: Vec<&Table> = Vec::new();
@@ -31,9 +31,9 @@ pub fn reference() -> String {
         "Instead of rows, `{ file = \"record.csv\" }` names a text file in the folder of the case. Each line is a row. \
          Commas, semicolons, tabs or spaces separate its values, and `#` begins a comment. A heading may give units as \
          `t [s], ux [mm]`, `t (s), ux (mm)` or `t / s, ux / mm`. A column without a unit in its heading is in SI units. \
-         With `along = \"x\"` (or \"y\", in 3-D \"z\") the file has two columns, a time and a value along this axis; the \
-         other components are zero. The rows become part of the case: `run.json` stores them, and a restart does not \
-         need the file. `--set` and the parameters of a sweep accept rows only.",
+         With `along = \"x\"` (or \"y\", in 3-D \"z\") the file has two columns: a time and a component along this axis. The \
+         other components are zero. `run.json` stores the rows, so that a restart does not need the file. `--set` and \
+         the parameters of a sweep accept rows, but no file.",
     );
     page.shared_words();
     page.histories();
@@ -85,7 +85,7 @@ impl Page {
             self.wrapped("- ", &format!("{noun}: {}", units.join(", ")));
         }
         self.line("");
-        self.paragraph("The first unit of each line is that of a number without a unit.");
+        self.paragraph("A number without a unit has the first unit of the line.");
     }
 
     fn table(&mut self, table: &Table) {

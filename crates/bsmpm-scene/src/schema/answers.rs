@@ -1,4 +1,4 @@
-//! Hints for unknown keys in a case file, such as symbols and names from other programs.
+//! Hints for unknown keys that users may write in a case file, such as symbols and names from other programs.
 
 use super::Table;
 

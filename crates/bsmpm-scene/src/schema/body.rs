@@ -9,9 +9,8 @@ pub(super) static BODY: Table = Table {
     header: "[[body]]",
     doc: "A body of soil, which is filled with material points.",
     keys: &[
-        key("material", Name, Required, "Name of its material.").example(r#""clay""#),
-        key("name", Name, Optional, "Name by which stages, histories and results refer to the body.")
-            .example(r#""lift_1""#),
+        key("material", Name, Required, "Name of the body's material.").example(r#""clay""#),
+        key("name", Name, Optional, "Name of the body in stages, histories and results.").example(r#""lift_1""#),
         BOX_KEY,
         POLYGON_KEY,
         CIRCLE_KEY,
@@ -20,14 +19,14 @@ pub(super) static BODY: Table = Table {
         REVOLVE_KEY,
         TERRAIN_KEY,
         SURFACE_KEY,
-        key("subtract", Tables(&SUBTRACT), Optional, "Shapes that are cut out of the body.")
+        key("subtract", Tables(&SUBTRACT), Optional, "Shapes that are removed from the body.")
             .example("[{ box = { lower = [2.0, 2.0], upper = [4.0, 4.0] } }]"),
         key(
             "points_per_cell",
             Count(1, 100),
             Required,
-            "Number of material points along each axis of a cell. Without this key `accuracy` or `purpose` chooses \
-             it.",
+            "Number of material points along each axis of a cell. Without this key `accuracy` or `purpose` chooses the \
+             number.",
         )
         .example("3")
         .or_preset(),
@@ -39,7 +38,7 @@ pub(super) static BODY: Table = Table {
         )
         .symbol("v")
         .example("[1.0, 0.0]"),
-        key("spin", Kind::Table(&SPIN), Optional, "Rigid rotation at the start, in addition to velocity.")
+        key("spin", Kind::Table(&SPIN), Optional, "Rigid-body rotation at the start, added to `velocity`.")
             .example("{ rate = 1.0, about = [0.0, 0.0] }"),
     ],
     exclusive: &[one_of(SHAPES, true)],
@@ -51,7 +50,7 @@ pub(super) const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, R
 
 static SPIN: Table = Table {
     header: "spin = { rate, about, axis }",
-    doc: "Rigid rotation at the start: the velocity of a material point is velocity + rate × (x - about).",
+    doc: "Rigid-body rotation at the start. A material point at x has the velocity `velocity` + rate × (x - about).",
     keys: &[
         key(
             "rate",
@@ -66,8 +65,7 @@ static SPIN: Table = Table {
             "axis",
             Vector(In::Number, Range::ANY),
             Optional,
-            "Axis of the rotation in 3-D. Seen against the axis the rotation is counter-clockwise. Without this key \
-             the axis is vertical.",
+            "Axis of the rotation in 3-D. The rotation is right-handed about it. Default: the vertical axis.",
         )
         .example("[0.0, 0.0, 1.0]"),
     ],
@@ -78,41 +76,42 @@ pub(super) static CIRCLE: Table = Table {
     header: "circle = { centre, radius }",
     doc: "A circle.",
     keys: &[
-        key("centre", Pair(In::Length, Range::ANY), Required, "Its centre.")
+        key("centre", Pair(In::Length, Range::ANY), Required, "Centre of the circle.")
             .example("[2.0, 2.0]")
             .renamed_from(&["center"]),
-        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "Its radius.").example(r#""1 m""#),
+        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "Radius of the circle.").example(r#""1 m""#),
     ],
     exclusive: &[],
 };
 
 static SUBTRACT: Table = Table {
     header: "subtract = [{ ... }, ...]",
-    doc: "A shape that is cut out of a body. It may extend beyond the body.",
+    doc: "A shape that is removed from a body. The shape may extend beyond the body.",
     keys: &[BOX_KEY, POLYGON_KEY, CIRCLE_KEY, EXTRUDE_KEY, SPHERE_KEY, REVOLVE_KEY, TERRAIN_KEY, SURFACE_KEY],
     exclusive: &[one_of(SHAPES, true)],
 };
 
 static TERRAIN: Table = Table {
     header: "terrain = { top, base, level }",
-    doc: "The ground below a regular raster of heights and above a base. The heights are interpolated bilinearly.",
+    doc: "Ground between a terrain surface and a base. The surface is a regular raster of heights with bilinear \
+          interpolation.",
     keys: &[
         key(
             "top",
             HEIGHTS,
             Required,
-            "Rows [x, y, z] in any order. A file may also be an ESRI ASCII grid, whose values belong to the centres \
-             of its cells.",
+            "Heights of the terrain: rows [x, y, z] in any order. A file may also be an ESRI ASCII grid, whose values \
+             are heights at the centres of its cells.",
         )
         .example(r#"{ file = "terrain.asc" }"#),
         key(
             "base",
             HEIGHTS,
             Optional,
-            "Heights of the lower side at the same places. They must not exceed those of the top.",
+            "Heights of the base at the same x and y as `top`. The base must not be above the terrain.",
         )
         .example(r#"{ file = "bedrock.asc" }"#),
-        key("level", Quantity(In::Length, Range::ANY), Optional, "Height of a horizontal base, instead of base.")
+        key("level", Quantity(In::Length, Range::ANY), Optional, "Alternative to `base`: height of a horizontal base.")
             .example("0.0"),
     ],
     exclusive: &[one_of(&["base", "level"], true)],
@@ -122,21 +121,21 @@ pub(super) const HEIGHTS: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, R
 
 pub(super) static SURFACE: Table = Table {
     header: "surface = { triangles, scale }",
-    doc: "A surface of triangles. For a body it must be closed, and inner shells may make cavities. For a traction \
-          it may be open, and must be in one piece.",
+    doc: "A surface of triangles. The surface of a body must be closed, and closed surfaces inside it are cavities. \
+          The surface of a traction may be open, but must be in one piece.",
     keys: &[
         key(
             "triangles",
             TRIANGLES,
             Required,
-            "Rows of the three corners of each triangle, nine coordinates in a row. A file may also be STL.",
+            "A row for each triangle: the nine coordinates of its three corners. A file may also be STL.",
         )
         .example(r#"{ file = "body.stl" }"#),
         key(
             "scale",
             Quantity(In::Number, Range::POSITIVE),
             Default("1.0"),
-            "Factor of all coordinates, for instance 0.001 for millimetres.",
+            "Factor that multiplies all coordinates, for instance 0.001 for millimetres.",
         )
         .example("0.001"),
     ],
@@ -147,14 +146,15 @@ const TRIANGLES: Kind = Rows(&[(In::Length, Range::ANY); 9]);
 
 static EXTRUDE: Table = Table {
     header: "extrude = { polygon, circle, along, from, to }",
-    doc: "An outline in the plane of two axes, extruded along the third one. The outline has the coordinates of the \
-          two axes in their order. A circle makes a cylinder.",
+    doc: "A 2-D outline that is extended along one axis. The coordinates of the outline are those of the other two \
+          axes, in the order x, y, z. A circle gives a cylinder.",
     keys: &[
         POLYGON_KEY,
         CIRCLE_KEY,
-        key("along", Choice(Axis::WORDS), Required, "The axis of the extrusion.").example(r#""z""#),
-        key("from", Quantity(In::Length, Range::ANY), Required, "Coordinate at which it begins.").example("0.0"),
-        key("to", Quantity(In::Length, Range::ANY), Required, "Coordinate at which it ends.").example(r#""2 m""#),
+        key("along", Choice(Axis::WORDS), Required, "Axis along which the outline is extended.").example(r#""z""#),
+        key("from", Quantity(In::Length, Range::ANY), Required, "Coordinate at which the shape begins.").example("0.0"),
+        key("to", Quantity(In::Length, Range::ANY), Required, "Coordinate at which the shape ends.")
+            .example(r#""2 m""#),
     ],
     exclusive: &[one_of(&["polygon", "circle"], true)],
 };
@@ -163,33 +163,36 @@ pub(super) static SPHERE: Table = Table {
     header: "sphere = { centre, radius }",
     doc: "A sphere.",
     keys: &[
-        key("centre", Vector(In::Length, Range::ANY), Required, "Its centre.")
+        key("centre", Vector(In::Length, Range::ANY), Required, "Centre of the sphere.")
             .example("[0.0, 0.0, 1.0]")
             .renamed_from(&["center"]),
-        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "Its radius.").example(r#""1 m""#),
+        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "Radius of the sphere.").example(r#""1 m""#),
     ],
     exclusive: &[],
 };
 
 pub(super) static REVOLVE: Table = Table {
     header: "revolve = { polygon, circle, about }",
-    doc: "An outline with the coordinates radius and z, rotated about a vertical axis.",
+    doc: "An outline that is rotated about a vertical axis. The coordinates of the outline are [radius, z].",
     keys: &[
         key("polygon", POLYGON, Optional, "Corners of a polygon as [radius, z], clockwise or counter-clockwise.")
             .example("[[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]]"),
-        key("circle", Kind::Table(&CIRCLE), Optional, "A circle, which makes a ring.")
+        key("circle", Kind::Table(&CIRCLE), Optional, "Alternative to `polygon`: a circle, which gives a torus.")
             .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
-        key("about", Pair(In::Length, Range::ANY), Required, "Coordinates x and y of the axis.").example("[0.0, 0.0]"),
+        key("about", Pair(In::Length, Range::ANY), Required, "Coordinates x and y of the vertical axis.")
+            .example("[0.0, 0.0]"),
     ],
     exclusive: &[one_of(&["polygon", "circle"], true)],
 };
 
 pub(super) static BOX: Table = Table {
     header: "box = { lower, upper }",
-    doc: "A rectangle, in 3-D a cuboid, with edges along the axes. It may cut cells.",
+    doc: "A rectangle, in 3-D a cuboid, with edges parallel to the axes. Edges need not be grid lines.",
     keys: &[
-        key("lower", Vector(In::Length, Range::ANY), Required, "Lower corner.").example("[0.0, 0.0]"),
-        key("upper", Vector(In::Length, Range::ANY), Required, "Upper corner.").example("[10.0, 4.0]"),
+        key("lower", Vector(In::Length, Range::ANY), Required, "Corner with the smallest coordinates.")
+            .example("[0.0, 0.0]"),
+        key("upper", Vector(In::Length, Range::ANY), Required, "Corner with the largest coordinates.")
+            .example("[10.0, 4.0]"),
     ],
     exclusive: &[],
 };
@@ -200,12 +203,13 @@ const BOX_KEY: Key = key("box", Kind::Table(&BOX), Optional, "A rectangle, in 3-
 const POLYGON_KEY: Key = key("polygon", POLYGON, Optional, "Corners of a polygon, clockwise or counter-clockwise.")
     .example("[[0.0, 0.0], [20.0, 0.0], [0.0, 10.0]]");
 pub(super) const CIRCLE_KEY: Key =
-    key("circle", Kind::Table(&CIRCLE), Optional, "A circle.").example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#);
+    key("circle", Kind::Table(&CIRCLE), Optional, "A circle. Parts outside the grid are ignored.")
+        .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#);
 const EXTRUDE_KEY: Key = key(
     "extrude",
     Kind::Table(&EXTRUDE),
     Optional,
-    "An outline that is extruded along an axis, for instance a cylinder. Only in 3-D.",
+    "An outline that is extended along an axis, for instance a cylinder. Only in 3-D.",
 )
 .example(r#"{ circle = { centre = [0.0, 0.0], radius = 1.0 }, along = "z", from = 0.0, to = 2.0 }"#);
 const SPHERE_KEY: Key = key("sphere", Kind::Table(&SPHERE), Optional, "A sphere. Only in 3-D.")
@@ -214,12 +218,8 @@ const REVOLVE_KEY: Key =
     key("revolve", Kind::Table(&REVOLVE), Optional, "An outline that is rotated about a vertical axis. Only in 3-D.")
         .example("{ polygon = [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]], about = [0.0, 0.0] }");
 const TERRAIN_KEY: Key =
-    key("terrain", Kind::Table(&TERRAIN), Optional, "The ground below a raster of heights. Only in 3-D.")
+    key("terrain", Kind::Table(&TERRAIN), Optional, "The ground below a terrain surface. Only in 3-D.")
         .example(r#"{ top = { file = "terrain.asc" }, level = 0.0 }"#);
-const SURFACE_KEY: Key = key(
-    "surface",
-    Kind::Table(&SURFACE),
-    Optional,
-    "The space that a closed surface of triangles encloses. Only in 3-D.",
-)
-.example(r#"{ triangles = { file = "body.stl" } }"#);
+const SURFACE_KEY: Key =
+    key("surface", Kind::Table(&SURFACE), Optional, "The space inside a closed surface of triangles. Only in 3-D.")
+        .example(r#"{ triangles = { file = "body.stl" } }"#);

@@ -7,22 +7,22 @@ use crate::words::{Path, Word};
 
 pub(super) static ELEMENT: Table = Table {
     header: "[element.NAME]",
-    doc: "A laboratory test of one material point, which `bsmpm element` computes. Runs of the case ignore it.",
+    doc: "A laboratory test of one material point. `bsmpm element` computes the test; `bsmpm-par` ignores it.",
     keys: &[
-        key("material", Name, Optional, "Name of the material. Without this key it is the only one of the case.")
+        key("material", Name, Optional, "Name of the material. Default: the only material of the case.")
             .example(r#""sand""#),
         key(
             "height",
             Quantity(In::Length, Range::ANY),
             Optional,
-            "Height of the point, y and in 3-D z. Required if parameters of the material depend on the height.",
+            "Height of the material point: y, in 3-D z. Required if parameters of the material vary with the height.",
         )
         .example(r#""5 m""#),
         key(
             "pressure",
             Quantity(In::Stress, Range::NOT_NEGATIVE),
             Default("0.0"),
-            "Effective vertical pressure at the start.",
+            "Vertical effective stress at the start, positive in compression.",
         )
         .symbol("σ'_v")
         .example(r#""100 kPa""#),
@@ -45,29 +45,29 @@ const STRESS: Kind = Quantity(In::Stress, Range::ANY);
 static STAGE: Table = Table {
     header: "stage = [{ test, ... }, ...]",
     doc: "A stage of a laboratory test. Strains are logarithmic and count from the start of the stage. Stresses are \
-          Cauchy stresses at its end. In between they change linearly. `compression` and `pressure` are positive in \
-          compression. The components of a mixed stage are positive in tension, as everywhere else.",
+          Cauchy stresses at the end of the stage. During the stage the prescribed values change linearly. \
+          `compression` and `pressure` are positive in compression, all other strains and stresses in tension.",
     keys: &[
         key(
             "test",
             Choice(Path::WORDS),
             Required,
-            "Kind of the test: which components are constant and which one is prescribed.",
+            "Type of the test, which determines the constant and the prescribed components.",
         )
         .example(r#""triaxial""#),
         key(
             "undrained",
             Flag,
             Default("false"),
-            "Whether the volume is constant. Stresses are then total stresses, and the pore pressure makes up the \
-             difference.",
+            "With true, the volume is constant. Given stresses are then total stresses, and the pore pressure is \
+             computed.",
         ),
         key(
             "compression",
             GROWTH,
             Optional,
-            "Axial logarithmic strain along y, positive when the sample shortens. A sample that shortens by half has \
-             0.693. In an isotropic test it is the volumetric strain.",
+            "Logarithmic axial strain (along y), positive if the specimen shortens. A specimen that shortens by half \
+             has 0.693. In an isotropic test: the volumetric strain.",
         )
         .symbol("ε_a")
         .example("0.1"),
@@ -75,7 +75,7 @@ static STAGE: Table = Table {
             "pressure",
             STRESS,
             Optional,
-            "Axial pressure along y, instead of compression. In an isotropic test it acts on all sides.",
+            "Alternative to `compression`: axial pressure (along y). In an isotropic test it acts on all sides.",
         )
         .symbol("σ_a")
         .example(r#""200 kPa""#),
@@ -83,29 +83,31 @@ static STAGE: Table = Table {
             "shear",
             GROWTH,
             Optional,
-            "Shear strain of simple-shear and mixed tests: displacement along x per height. In a mixed test it is 0 \
-             without this key.",
+            "Shear strain of simple-shear and mixed tests: displacement along x divided by the height. Default in a \
+             mixed test: 0.",
         )
         .symbol("γ")
         .example("0.2"),
-        key("shear_stress", STRESS, Optional, "Shear stress, instead of shear.").symbol("τ").example(r#""20 kPa""#),
-        key("strain_xx", GROWTH, Optional, "Strain along x, in a mixed test.").symbol("ε_xx").example("0.01"),
-        key("strain_yy", GROWTH, Optional, "Strain along y, in a mixed test.").symbol("ε_yy").example("-0.02"),
-        key("strain_zz", GROWTH, Optional, "Strain along z, in a mixed test.").symbol("ε_zz").example("0.0"),
-        key("stress_xx", STRESS, Optional, "Stress along x, in a mixed test, instead of the strain.")
+        key("shear_stress", STRESS, Optional, "Alternative to `shear`: shear stress.")
+            .symbol("τ")
+            .example(r#""20 kPa""#),
+        key("strain_xx", GROWTH, Optional, "Strain along x in a mixed test.").symbol("ε_xx").example("0.01"),
+        key("strain_yy", GROWTH, Optional, "Strain along y in a mixed test.").symbol("ε_yy").example("-0.02"),
+        key("strain_zz", GROWTH, Optional, "Strain along z in a mixed test.").symbol("ε_zz").example("0.0"),
+        key("stress_xx", STRESS, Optional, "Alternative to `strain_xx` in a mixed test: stress along x.")
             .symbol("σ_xx")
             .example(r#""-50 kPa""#),
-        key("stress_yy", STRESS, Optional, "Stress along y, in a mixed test, instead of the strain.")
+        key("stress_yy", STRESS, Optional, "Alternative to `strain_yy` in a mixed test: stress along y.")
             .symbol("σ_yy")
             .example(r#""-100 kPa""#),
-        key("stress_zz", STRESS, Optional, "Stress along z, in a mixed test, instead of the strain.")
+        key("stress_zz", STRESS, Optional, "Alternative to `strain_zz` in a mixed test: stress along z.")
             .symbol("σ_zz")
             .example(r#""-50 kPa""#),
         key(
             "duration",
             Quantity(In::Duration, Range::POSITIVE),
             Optional,
-            "Duration of the stage, for strengths that depend on the strain rate. Without this key the rate has no \
+            "Duration of the stage, for a strength that depends on the strain rate. Without this key the rate has no \
              effect.",
         )
         .example(r#""1 h""#),
@@ -113,7 +115,7 @@ static STAGE: Table = Table {
             "steps",
             Count(1, 1_000_000),
             Default("100"),
-            "Number of equal steps, each of which is a row of the table.",
+            "Number of equal steps of the stage. Each step gives a row of the output table.",
         )
         .example("100"),
     ],

@@ -9,20 +9,20 @@ const PLACE: Kind = Pair(In::Length, Range::ANY);
 
 pub(super) static DRAIN: Table = Table {
     header: "[[drain]]",
-    doc: "A surface through which water flows freely at a given pressure, which is that of the hydrostatic water \
-          unless the drain gives another. A drain at the surface of a body moves with the material. All other \
-          surfaces are impermeable.",
+    doc: "A surface through which water flows freely, at the hydrostatic pressure or at a given pore pressure. A drain \
+          at the surface of a body moves with the material. Surfaces without a drain or inflow are impermeable.",
     keys: &[
-        key("name", Name, Optional, "Name by which histories and stages refer to the drain.").example(r#""river_bed""#),
+        key("name", Name, Optional, "Name of the drain in histories and stages.").example(r#""river_bed""#),
         key(
             "face",
             Choice(Side::WORDS),
             Optional,
-            "A face of the grid to which bodies extend. It does not move with the ground. If the ground moves away \
-             from the face, name the surface of the body instead.",
+            "A face of the grid to which bodies extend. The drain does not move with the ground. If the ground moves \
+             away from the face, give the surface of the body instead.",
         )
         .example(r#""bottom""#),
-        key("from", PLACE, Optional, "One end of a segment of a body's surface, at the start.").example("[0.0, 6.0]"),
+        key("from", PLACE, Optional, "One end of a segment on the surface of a body, at the start.")
+            .example("[0.0, 6.0]"),
         loads::TO_KEY,
         loads::CIRCLE_KEY,
         loads::RECTANGLE_KEY,
@@ -31,40 +31,45 @@ pub(super) static DRAIN: Table = Table {
             "surface",
             Flag,
             Optional,
-            "With true, the drain is the whole surface of the permeable bodies, except where a face of the grid \
-             supports them. It is their surface at the start, or when a stage activates the drain.",
+            "With true, the drain is the whole surface of the permeable bodies, except at faces of the grid that \
+             support them. The surface is that at the start, or when a stage activates the drain.",
         ),
         key(
             "head",
             Quantity(In::Length, Range::ANY),
             Optional,
-            "Hydraulic head, the height to which the water would rise in a standpipe.",
+            "Hydraulic head: height to which water would rise in a standpipe.",
         )
         .example(r#""4 m""#),
         key(
             "head_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY)]),
             Optional,
-            "Rows [t, head], instead of head, with t increasing. The head is interpolated linearly, and is constant \
-             before the first row and after the last.",
+            "Alternative to `head`: time-dependent head, in rows [t, head] with increasing t. The head is linear \
+             between the rows, and constant before and after them.",
         )
         .example(r#"[[0.0, 4.0], ["1 d", 2.0]]"#),
-        key("pressure", Quantity(In::Stress, Range::ANY), Optional, "Pore pressure at the drain, instead of head.")
-            .example(r#""0 kPa""#),
+        key(
+            "pressure",
+            Quantity(In::Stress, Range::ANY),
+            Optional,
+            "Alternative to `head`: pore pressure at the drain.",
+        )
+        .example(r#""0 kPa""#),
         key(
             "pressure_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Stress, Range::ANY)]),
             Optional,
-            "Rows [t, pressure], instead of pressure, with t increasing. The pressure is interpolated linearly, and \
-             is constant before the first row and after the last.",
+            "Alternative to `head`: time-dependent pore pressure, in rows [t, pressure] with increasing t. The \
+             pressure is linear between the rows, and constant before and after them.",
         )
         .example(r#"[[0.0, "20 kPa"], ["1 d", 0.0]]"#),
         key(
             "seepage",
             Flag,
             Optional,
-            "With true, the drain is a seepage face: above the hydrostatic water the pore pressure is zero, and \
-             water flows out only.",
+            "With true, the drain is a seepage face: above the water table the pore pressure is zero, and water can \
+             only flow out.",
         ),
     ],
     exclusive: &[
@@ -76,16 +81,15 @@ pub(super) static DRAIN: Table = Table {
 
 pub(super) static INFLOW: Table = Table {
     header: "[[inflow]]",
-    doc: "Water that is put into the ground through a segment of a body's surface, in 3-D through a rectangle or a \
-          disc. It moves with the surface.",
+    doc: "A surface through which water enters the ground at a given rate. An inflow at the surface of a body moves \
+          with the material.",
     keys: &[
-        key("name", Name, Optional, "Name by which the log, results and stages refer to the inflow.")
-            .example(r#""rain""#),
+        key("name", Name, Optional, "Name of the inflow in the log, results and stages.").example(r#""rain""#),
         key(
             "face",
             Choice(Side::WORDS),
             Optional,
-            "A face of the grid. Only the part counts that lies between the ends of the permeable bodies there.",
+            "A face of the grid. Water enters only between the ends of the permeable bodies at this face.",
         )
         .example(r#""top""#),
         loads::FROM_KEY,
@@ -104,15 +108,15 @@ pub(super) static INFLOW: Table = Table {
             "rate_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Seepage, Range::ANY)]),
             Optional,
-            "Rows [t, rate], instead of rate, with t increasing. The rate is interpolated linearly, and is constant \
-             before the first row and after the last.",
+            "Alternative to `rate`: time-dependent rate, in rows [t, rate] with increasing t. The rate is linear \
+             between the rows, and constant before and after them.",
         )
         .example(r#"[[0.0, "5 mm/h"], ["6 h", 0.0]]"#),
         key(
             "runoff",
             Flag,
             super::Presence::Default("false"),
-            "With true, only as much water enters as the ground takes without pressure at its surface, as with rain. \
+            "With true, water enters only as long as the pore pressure at the surface is not positive, as with rain. \
              The rest runs off.",
         )
         .renamed_from(&["runs_off"]),

@@ -1,4 +1,4 @@
-//! Constitutive laws in the case file: the word of each law, its keys, and the law that they make.
+//! Constitutive laws in the case file: the name of each law, its keys, and its conversion to a Rust type.
 
 use crate::record::Record;
 use bsmpm::material::{
@@ -19,9 +19,10 @@ choice! {
         DruckerPrager = "drucker-prager",
         /// Von Mises with linear hardening.
         VonMises = "von-mises",
-        /// Mohr-Coulomb whose strength falls to residual values with the plastic strain.
+        /// Mohr-Coulomb with softening: the strength decreases with the plastic strain to residual values.
         Softening = "mohr-coulomb-softening",
-        /// Undrained clay whose strength falls with the plastic shear strain and may grow with its rate.
+        /// Undrained clay with softening. The strength decreases with the plastic shear strain, and can increase with
+        /// the strain rate.
         SensitiveClay = "sensitive-clay",
         /// Modified Cam-clay: stiffness and strength depend on the effective stress and on the preconsolidation.
         CamClay = "modified-cam-clay",
@@ -109,17 +110,17 @@ impl LawName {
 }
 
 words! { Separation {
-    Forgotten = "plastic": "The change of volume is plastic.",
-    Closing = "gap": "The change of volume is a gap, which closes before the material carries pressure again.",
+    Forgotten = "plastic": "The volume increase is a plastic strain.",
+    Closing = "gap": "The volume increase is a gap. The soil carries pressure again after the gap has closed.",
 } earlier ["forgotten": "plastic", "closing": "gap"] }
 
 words! { Decay {
-    Linear = "linear": "In proportion to the plastic strain, until it is softening_strain.",
-    Exponential = "exponential": "Exponentially, with 95 % of the loss at softening_strain.",
+    Linear = "linear": "The strength decreases linearly, until the plastic strain is softening_strain.",
+    Exponential = "exponential": "The strength decreases exponentially, with 95 % of the loss at softening_strain.",
 } }
 
 words! { Match {
-    Outer = "outer": "In triaxial compression. Elsewhere it is stronger than Mohr-Coulomb.",
-    Inner = "inner": "In triaxial extension. In compression it is weaker than Mohr-Coulomb.",
-    PlaneStrain = "plane-strain": "In plane strain with associated flow. With less dilation it is weaker than Mohr-Coulomb.",
+    Outer = "outer": "Equal strength in triaxial compression. Elsewhere drucker-prager is stronger.",
+    Inner = "inner": "Equal strength in triaxial extension. In compression drucker-prager is weaker.",
+    PlaneStrain = "plane-strain": "Equal strength in plane strain if ψ = φ'. With less dilation drucker-prager is weaker.",
 } }

@@ -11,15 +11,15 @@ use std::ops::Bound::{Excluded, Included, Unbounded};
 
 pub(crate) static MATERIAL: Table = Table {
     header: "[material.NAME]",
-    doc: "A material with a name. Its keys depend on its model: [how to choose a law](../how-to/choose-law.md).",
+    doc: "A material with a name. Its keys depend on `model`: [how to choose a law](../how-to/choose-law.md).",
     keys: &[
         key("model", Choice(LawName::WORDS), Required, "Constitutive law.").example(r#""mohr-coulomb""#),
         key(
             "young",
             Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
             Required,
-            "Young's modulus. For modified-cam-clay it only sets the constant shear modulus G = E / (2 (1 + ν)). \
-             Take E = 3 (1 - 2ν) p'/κ* at a typical pressure p'.",
+            "Young's modulus. In modified-cam-clay it determines only the constant shear modulus G = E / (2 (1 + ν)). \
+             Use E = 3 (1 - 2ν) p'/κ* at a typical pressure p'.",
         )
         .symbol("E")
         .example(r#""30 MPa""#),
@@ -28,8 +28,8 @@ pub(crate) static MATERIAL: Table = Table {
             "friction_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "Friction angle. Required by mohr-coulomb, drucker-prager and mohr-coulomb-softening, where it is the \
-             value before any plastic strain.",
+            "Friction angle. Required by mohr-coulomb, drucker-prager and mohr-coulomb-softening. In \
+             mohr-coulomb-softening it is the peak value.",
         )
         .symbol("φ'")
         .example("30.0")
@@ -38,7 +38,7 @@ pub(crate) static MATERIAL: Table = Table {
             "dilation_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "Dilation angle, at most the friction angle. Without this key it is 0.",
+            "Dilation angle, at most equal to the friction angle. Default: 0.",
         )
         .symbol("ψ")
         .example("0.0")
@@ -47,8 +47,8 @@ pub(crate) static MATERIAL: Table = Table {
             "cohesion",
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
             Optional,
-            "Cohesion. With model \"tresca\" and \"sensitive-clay\" it is the undrained shear strength. Required by \
-             all models but elastic, von-mises, modified-cam-clay and mu-i, which have none.",
+            "Cohesion; in tresca and sensitive-clay the undrained shear strength. Required by all models except \
+             elastic, von-mises, modified-cam-clay and mu-i.",
         )
         .symbol("c', s_u")
         .example(r#""10 kPa""#),
@@ -56,7 +56,7 @@ pub(crate) static MATERIAL: Table = Table {
             "residual_friction_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "Friction angle after softening_strain. Required by mohr-coulomb-softening.",
+            "Friction angle after complete softening. Required by mohr-coulomb-softening.",
         )
         .symbol("φ'_r")
         .example("25.0")
@@ -65,7 +65,7 @@ pub(crate) static MATERIAL: Table = Table {
             "residual_dilation_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
             Optional,
-            "Dilation angle after softening_strain, at most residual_friction_angle. Without this key it is 0.",
+            "Dilation angle after complete softening, at most equal to residual_friction_angle. Default: 0.",
         )
         .symbol("ψ_r")
         .example("0.0")
@@ -74,7 +74,7 @@ pub(crate) static MATERIAL: Table = Table {
             "residual_cohesion",
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
             Optional,
-            "Cohesion after softening_strain. Required by mohr-coulomb-softening.",
+            "Cohesion after complete softening. Required by mohr-coulomb-softening.",
         )
         .symbol("c'_r")
         .example(r#""1 kPa""#),
@@ -82,10 +82,9 @@ pub(crate) static MATERIAL: Table = Table {
             "softening_strain",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "Plastic strain at which the strength has reached its residual value, or 95 % of the loss with \
-             exponential softening. For mohr-coulomb-softening it is κ, the sum of sqrt(2/3) times the norm of the \
-             deviatoric plastic strain increments. For sensitive-clay it is ξ = sqrt(3) κ at 95 % of the softening. \
-             Required by both.",
+            "Plastic strain at the end of softening; with exponential softening at 95 % of the loss of strength. In \
+             mohr-coulomb-softening it is κ, the sum of sqrt(2/3) times the norm of the deviatoric plastic strain \
+             increments. In sensitive-clay it is the shear strain ξ = sqrt(3) κ. Required by both models.",
         )
         .symbol("κ_r, ξ95")
         .example("0.2"),
@@ -93,7 +92,7 @@ pub(crate) static MATERIAL: Table = Table {
             "sensitivity",
             Quantity(In::Number, Range::of(Included(1.0), Unbounded)),
             Optional,
-            "Ratio of the cohesion to that of the remoulded clay. Required by sensitive-clay.",
+            "Cohesion divided by the cohesion of the remoulded clay. Required by sensitive-clay.",
         )
         .symbol("S_t")
         .example("10.0"),
@@ -101,7 +100,7 @@ pub(crate) static MATERIAL: Table = Table {
             "rate_parameter",
             Quantity(In::Number, Range::NOT_NEGATIVE),
             Optional,
-            "Relative growth of the cohesion per decade of the plastic shear strain rate, for sensitive-clay in \
+            "Relative increase of the cohesion for a tenfold plastic shear strain rate, in sensitive-clay and in \
              dynamic and quasi-static-rate analyses. Without this key the cohesion does not depend on the rate.",
         )
         .symbol("μ")
@@ -110,7 +109,7 @@ pub(crate) static MATERIAL: Table = Table {
             "reference_rate",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "Strain rate of the laboratory test that gave the cohesion, in 1/s. Required with rate_parameter.",
+            "Shear strain rate, in 1/s, of the laboratory test that gave the cohesion. Required with rate_parameter.",
         )
         .symbol("ξ̇_ref")
         .example("1e-5"),
@@ -118,25 +117,27 @@ pub(crate) static MATERIAL: Table = Table {
             "softening",
             Choice(Decay::WORDS),
             Optional,
-            "How the strength of mohr-coulomb-softening falls with the plastic strain. Without this key it falls \
-             linearly. The strength of sensitive-clay always falls exponentially.",
+            "Decrease of the strength of mohr-coulomb-softening with the plastic strain. Default: \"linear\". The \
+             strength of sensitive-clay always decreases exponentially.",
         )
         .example(r#""exponential""#),
         key(
             "band_width",
             Quantity(In::Length, Range::POSITIVE),
             Optional,
-            "Thickness of the shear band to which softening_strain belongs. Cells of size h then soften at the \
+            "Thickness of the shear band to which softening_strain belongs. In cells of size h softening ends at the \
              strain softening_strain times band_width / (2 h), so that the dissipated energy does not depend on the \
-             cells (crack band). All cells must have the same size. Without this key the results depend on the cells.",
+             cell size (crack-band model). All cells must have the same size. Without this key the results depend on \
+             the cell size.",
         )
         .example(r#""0.02 m""#),
         key(
             "kappa_star",
             Quantity(In::Number, BELOW_1),
             Optional,
-            "Slope of the unloading line in ln v over ln p'. The bulk modulus is p'/κ*, and the shear modulus \
-             follows from young and poisson. Required by modified-cam-clay, unless it has kappa and void_ratio.",
+            "Slope of the unloading line in the diagram of ln v and ln p' (v: specific volume). The bulk modulus is \
+             p'/κ*; the shear modulus follows from young and poisson. Required by modified-cam-clay, unless it has \
+             kappa and void_ratio.",
         )
         .symbol("κ*")
         .example("0.02"),
@@ -144,8 +145,8 @@ pub(crate) static MATERIAL: Table = Table {
             "lambda_star",
             Quantity(In::Number, BELOW_1),
             Optional,
-            "Slope of the normal compression line in ln v over ln p', larger than kappa_star. Required by \
-             modified-cam-clay, unless it has lambda and void_ratio.",
+            "Slope of the normal compression line in the diagram of ln v and ln p' (v: specific volume), larger than \
+             kappa_star. Required by modified-cam-clay, unless it has lambda and void_ratio.",
         )
         .symbol("λ*")
         .example("0.1"),
@@ -153,7 +154,8 @@ pub(crate) static MATERIAL: Table = Table {
             "kappa",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "Slope of the unloading line in v over ln p', instead of kappa_star: κ* = κ / (1 + e0).",
+            "Alternative to `kappa_star`: slope of the unloading line in the diagram of v and ln p', with κ* = κ / (1 \
+             + e0).",
         )
         .symbol("κ")
         .example("0.05"),
@@ -161,7 +163,8 @@ pub(crate) static MATERIAL: Table = Table {
             "lambda",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "Slope of the normal compression line in v over ln p', instead of lambda_star: λ* = λ / (1 + e0).",
+            "Alternative to `lambda_star`: slope of the normal compression line in the diagram of v and ln p', with λ* \
+             = λ / (1 + e0).",
         )
         .symbol("λ")
         .example("0.25"),
@@ -177,8 +180,8 @@ pub(crate) static MATERIAL: Table = Table {
             "critical_state_ratio",
             Quantity(In::Number, BELOW_3),
             Optional,
-            "Ratio q/p' at the critical state, 6 sin(φ')/(3 - sin(φ')) in triaxial compression. It is the same in \
-             all directions of shear. Required by modified-cam-clay.",
+            "Stress ratio q/p' at the critical state, equal for all Lode angles. It is 6 sin(φ')/(3 - sin(φ')) for the \
+             friction angle φ' of triaxial compression. Required by modified-cam-clay.",
         )
         .symbol("M")
         .example("1.2")
@@ -187,8 +190,8 @@ pub(crate) static MATERIAL: Table = Table {
             "preconsolidation",
             Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
             Optional,
-            "Mean effective stress at the tip of the yield surface at the start. modified-cam-clay requires this or \
-             ocr.",
+            "Isotropic preconsolidation pressure at the start (size of the yield surface). modified-cam-clay requires \
+             preconsolidation or ocr.",
         )
         .symbol("p'_c")
         .example(r#""100 kPa""#),
@@ -196,8 +199,9 @@ pub(crate) static MATERIAL: Table = Table {
             "ocr",
             Quantity(In::Number, Range::of(Included(1.0), Unbounded)),
             Optional,
-            "Overconsolidation ratio. For modified-cam-clay it is the size of the yield surface over that through \
-             the stress at the start. For laws with a friction angle it gives k0 = (1 - sin(φ')) OCR^sin(φ').",
+            "Overconsolidation ratio. In modified-cam-clay it is the size of the yield surface divided by the size of \
+             the yield surface through the initial stress. In laws with a friction angle it gives k0 = (1 - sin(φ')) \
+             OCR^sin(φ').",
         )
         .symbol("OCR")
         .example("1.5"),
@@ -205,7 +209,7 @@ pub(crate) static MATERIAL: Table = Table {
             "mu_s",
             Quantity(In::Number, BELOW_3),
             Optional,
-            "Friction coefficient of slow shear. In plane strain it is the sine of the friction angle. Required by \
+            "Friction coefficient in slow shear. In plane strain it is the sine of the friction angle. Required by \
              mu-i.",
         )
         .symbol("μ_s")
@@ -214,7 +218,7 @@ pub(crate) static MATERIAL: Table = Table {
             "mu_2",
             Quantity(In::Number, BELOW_3),
             Optional,
-            "Friction coefficient of fast shear, at least mu_s. Required by mu-i.",
+            "Friction coefficient in fast shear, not less than mu_s. Required by mu-i.",
         )
         .symbol("μ_2")
         .example("0.64"),
@@ -222,8 +226,8 @@ pub(crate) static MATERIAL: Table = Table {
             "inertial_number",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "Inertial number at which half of μ_2 - μ_s is reached. The inertial number is the shear strain rate \
-             times grain_diameter times sqrt(grain_density / p). Required by mu-i.",
+            "Inertial number at which the friction coefficient is the mean of μ_s and μ_2. It is the shear strain rate \
+             times grain_diameter times sqrt(grain_density / p), with the pressure p. Required by mu-i.",
         )
         .symbol("I_0")
         .example("0.3"),
@@ -247,8 +251,8 @@ pub(crate) static MATERIAL: Table = Table {
             "fit",
             Choice(Match::WORDS),
             Optional,
-            "Where the cone of drucker-prager meets the pyramid of mohr-coulomb. Without this key it is \
-             \"plane-strain\". The program warns if the strength then differs from that of mohr-coulomb.",
+            "Stress state in which drucker-prager has the strength of mohr-coulomb. Default: \"plane-strain\". The \
+             program warns if the strengths differ.",
         )
         .example(r#""plane-strain""#)
         .renamed_from(&["match"]),
@@ -264,7 +268,7 @@ pub(crate) static MATERIAL: Table = Table {
             "hardening",
             Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
             Optional,
-            "Growth of the yield stress per plastic strain, for von-mises. Without this key it is 0.",
+            "Hardening modulus of von-mises: increase of the yield stress per plastic strain. Default: 0.",
         )
         .symbol("H")
         .example(r#""1 MPa""#),
@@ -272,8 +276,7 @@ pub(crate) static MATERIAL: Table = Table {
             "separation",
             Choice(Separation::WORDS),
             Optional,
-            "Volume change at the apex of mohr-coulomb: plastic, or a gap that must close before the material \
-             carries pressure again. Without this key it is plastic.",
+            "Meaning of the volume increase at the apex of mohr-coulomb. Default: \"plastic\".",
         )
         .example(r#""gap""#),
         key(
@@ -288,8 +291,8 @@ pub(crate) static MATERIAL: Table = Table {
             "density",
             Quantity(In::Density, Range::POSITIVE),
             Optional,
-            "Density. A material without density and unit weight is weightless, which is an error in dynamic \
-             analyses.",
+            "Alternative to `unit_weight`: density. A material without either is weightless, which dynamic analyses \
+             refuse.",
         )
         .symbol("ρ")
         .example("2000.0"),
@@ -297,7 +300,7 @@ pub(crate) static MATERIAL: Table = Table {
             "saturated_unit_weight",
             Quantity(In::UnitWeight, Range::POSITIVE),
             Optional,
-            "Unit weight below the water table at the start. Without this key it is that above the water table.",
+            "Unit weight of soil below the water table at the start. Default: the unit weight above the water table.",
         )
         .symbol("γ_sat")
         .example(r#""21 kN/m3""#),
@@ -305,8 +308,8 @@ pub(crate) static MATERIAL: Table = Table {
             "ru",
             Quantity(In::Number, BELOW_1),
             Optional,
-            "Pore pressure ratio: pore pressure over the weight of the soil vertically above, at the start, instead \
-             of [water]. The material points keep this pressure.",
+            "Pore pressure ratio, instead of [water]: pore pressure divided by the weight of the soil vertically \
+             above, at the start. Material points keep this pore pressure.",
         )
         .symbol("r_u")
         .example("0.25"),
@@ -322,8 +325,7 @@ pub(crate) static MATERIAL: Table = Table {
             "drainage",
             Choice(Drainage::WORDS),
             Optional,
-            "Drainage of this material in consolidation and dynamic analyses. Without this key it is that of \
-             [water].",
+            "Drainage of this material in consolidation and dynamic analyses. Default: `water.drainage`.",
         )
         .example(r#""coupled""#),
         key(
@@ -338,7 +340,7 @@ pub(crate) static MATERIAL: Table = Table {
             "permeability",
             Either(In::Seepage, Range::POSITIVE),
             Optional,
-            "Hydraulic conductivity, or one along each axis. Required with drainage \"coupled\".",
+            "Hydraulic conductivity: one value, or one along each axis. Required with drainage \"coupled\".",
         )
         .symbol("k")
         .example(r#""1e-8 m/s""#),
@@ -346,20 +348,20 @@ pub(crate) static MATERIAL: Table = Table {
             "permeability_law",
             Choice(PermeabilityLaw::WORDS),
             Optional,
-            "How the permeability depends on the porosity. Without this key it is constant.",
+            "Dependence of the permeability on the porosity. Without this key the permeability is constant.",
         )
         .example(r#""kozeny-carman""#),
         key(
             "retention",
             Kind::Table(&RETENTION),
             Optional,
-            "Soil-water retention curve of a coupled material. Without this table the pores stay saturated.",
+            "Soil-water retention curve of a coupled material. Without this table the soil stays saturated.",
         ),
         key(
             "damping",
             Kind::Table(&DAMPING),
             Optional,
-            "Viscous damping in dynamic analyses. Without this table there is none.",
+            "Viscous damping in dynamic analyses. Without this table there is no viscous damping.",
         ),
     ],
     exclusive: &[
@@ -372,15 +374,15 @@ pub(crate) static MATERIAL: Table = Table {
 
 static RETENTION: Table = Table {
     header: "[material.NAME] retention",
-    doc: "Soil-water retention curve with the effective stress of Bishop. It is that of van Genuchten, with the \
-          effective saturation (1 + (alpha s)^n)^(1/n - 1) at the suction head s and the permeability of Mualem, or a \
-          measured curve.",
+    doc: "Soil-water retention curve: the function of van Genuchten, or a measured curve. Van Genuchten's effective \
+          saturation is (1 + (alpha s)^n)^(1/n - 1) at the suction head s, with the permeability of Mualem. The \
+          effective stress is that of Bishop.",
     keys: &[
         key(
             "alpha",
             Quantity(In::Number, Range::POSITIVE),
             Optional,
-            "Van Genuchten's alpha in 1/m, about the inverse of the suction head at which air enters.",
+            "Van Genuchten's alpha in 1/m: about the inverse of the suction head at air entry.",
         )
         .symbol("α")
         .example("2.0"),
@@ -388,7 +390,7 @@ static RETENTION: Table = Table {
             "n",
             Quantity(In::Number, PORES),
             Optional,
-            "Van Genuchten's n. The larger it is, the more uniform the pores are. Required with alpha.",
+            "Van Genuchten's n, which is large in soil with pores of uniform size. Required with alpha.",
         )
         .symbol("n")
         .example("1.6"),
@@ -396,13 +398,19 @@ static RETENTION: Table = Table {
             "curve",
             Rows(&[(In::Length, Range::NOT_NEGATIVE), (In::Number, SHARES), (In::Number, SHARES)]),
             Optional,
-            "Rows of suction head, saturation and relative permeability, instead of alpha and n. The first row is \
-             [0, 1, 1]. The curve is smooth and falls between the rows, and is constant beyond the last one.",
+            "Alternative to `alpha` and `n`: measured curve, in rows of suction head, saturation and relative \
+             permeability. The first row is [0, 1, 1]. The curve decreases smoothly between the rows, and is constant \
+             after the last row.",
         )
         .example("[[0.0, 1.0, 1.0], [2.0, 0.6, 0.1]]"),
-        key("residual", Quantity(In::Number, SHARE), Default("0"), "Saturation that no suction removes.")
-            .symbol("S_r")
-            .example("0.1"),
+        key(
+            "residual",
+            Quantity(In::Number, SHARE),
+            Default("0"),
+            "Residual saturation, which remains under any suction.",
+        )
+        .symbol("S_r")
+        .example("0.1"),
     ],
     exclusive: &[one_of(&["alpha", "curve"], true)],
 };
@@ -413,21 +421,26 @@ const SHARES: Range = Range::of(Included(0.0), Included(1.0));
 
 static DAMPING: Table = Table {
     header: "[material.NAME] damping",
-    doc: "Kelvin-Voigt damping: the elastic stiffness times ratio/(π frequency) times the rate of elastic strain. \
-          The damping ratio grows in proportion to the frequency. Motion without strain and plastic flow are not \
-          damped.",
+    doc: "Kelvin-Voigt damping. The viscous stress is the elastic stiffness times ratio/(π frequency) times the rate \
+          of elastic strain. The damping ratio is proportional to the frequency. Rigid-body motion and plastic flow \
+          are not damped.",
     keys: &[
         key(
             "ratio",
             Quantity(In::Number, BELOW_1),
             Required,
-            "Damping ratio (part of critical damping) at this frequency.",
+            "Damping ratio (fraction of critical damping) at `frequency`.",
         )
         .symbol("ξ")
         .example("0.05"),
-        key("frequency", Quantity(In::Number, Range::POSITIVE), Required, "Frequency in Hz.")
-            .symbol("f")
-            .example("2.0"),
+        key(
+            "frequency",
+            Quantity(In::Number, Range::POSITIVE),
+            Required,
+            "Frequency in Hz at which the damping ratio is `ratio`.",
+        )
+        .symbol("f")
+        .example("2.0"),
     ],
     exclusive: &[],
 };

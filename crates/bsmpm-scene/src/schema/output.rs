@@ -8,28 +8,43 @@ use std::ops::Bound::{Excluded, Included};
 
 pub(super) static OUTPUT: Table = Table {
     header: "[output]",
-    doc: "Frames for ParaView and the residuals of the iterations.",
+    doc: "Frames for ParaView, residuals of the iterations, and restart files.",
     keys: &[
-        key("every", Quantity(In::Time, Range::POSITIVE), Optional, "Time between frames. Steps end at these times.")
-            .example(r#""0.1 s""#),
+        key(
+            "every",
+            Quantity(In::Time, Range::POSITIVE),
+            Optional,
+            "Time between two frames. A step ends at each frame.",
+        )
+        .example(r#""0.1 s""#),
         key(
             "every_steps",
             Count(1, 1_000_000_000),
             Optional,
-            "Number of accepted steps between frames, instead of every.",
+            "Alternative to `every`: number of accepted steps between two frames.",
         )
         .example("10"),
-        key("times", List(In::Time, Range::POSITIVE), Optional, "Further times of frames. Steps end at these times.")
-            .example("[0.25, 0.5]"),
+        key(
+            "times",
+            List(In::Time, Range::POSITIVE),
+            Optional,
+            "Additional times of frames. A step ends at each of these times.",
+        )
+        .example("[0.25, 0.5]"),
         key("format", Choice(Format::WORDS), Default("\"vtu\""), "Format of the frames.").example(r#""vtu""#),
-        key("residuals", Flag, Default("false"), "Whether residuals.csv has a row for every iteration."),
+        key(
+            "residuals",
+            Flag,
+            Default("false"),
+            "With true, the run writes residuals.csv with a row for every iteration.",
+        ),
         key(
             "projected_pressure",
             Flag,
             Default("false"),
-            "Whether frames also have the pressure, projected onto splines of the next lower degree.",
+            "With true, frames also contain the pressure projected onto B-splines of the next lower degree.",
         ),
-        key("fields", Choices(FrameField::WORDS), Optional, "Further fields in the frames.")
+        key("fields", Choices(FrameField::WORDS), Optional, "Additional fields in the frames.")
             .example(r#"["q", "yielding"]"#),
         key(
             "accept",
@@ -43,7 +58,7 @@ pub(super) static OUTPUT: Table = Table {
             "checkpoint",
             Kind::Table(&CHECKPOINT),
             Optional,
-            "When restart files are written, in addition to every early stop.",
+            "Times at which the run writes restart files. A run that stops early always writes one.",
         ),
     ],
     exclusive: &[one_of(&["every", "every_steps"], false)],
@@ -51,43 +66,47 @@ pub(super) static OUTPUT: Table = Table {
 
 static CHECKPOINT: Table = Table {
     header: "checkpoint = { wall, every_steps, keep }",
-    doc: "Restart files. With this table one is also written at the end of the run.",
+    doc: "Restart files. A case with this table also writes a restart file at the end of the run.",
     keys: &[
         key(
             "wall",
             Quantity(In::Duration, Range::POSITIVE),
             Default("\"15 min\""),
-            "Wall-clock time between two restart files. It applies without this table too.",
+            "Wall-clock time between two restart files. The default also applies without this table.",
         )
         .example(r#""15 min""#),
         key(
             "every_steps",
             Count(1, 1_000_000_000),
             Optional,
-            "Number of accepted steps between two restart files, in addition to wall.",
+            "Number of accepted steps between two restart files. `wall` remains active.",
         )
         .example("100"),
-        key("keep", Count(1, 1000), Default("2"), "Number of restart files that are kept, the newest ones.")
-            .example("2"),
+        key(
+            "keep",
+            Count(1, 1000),
+            Default("2"),
+            "Number of restart files that are kept. Older restart files are deleted.",
+        )
+        .example("2"),
     ],
     exclusive: &[],
 };
 
 pub(super) static HISTORY: Table = Table {
     header: "[[history]]",
-    doc: "One column of history.csv, or several.",
+    doc: "A quantity that history.csv records at every step.",
     keys: &[
         key("quantity", Choice(Measurement::WORDS), Required, "Quantity that is recorded at every step.")
             .example(r#""max-displacement""#),
-        key("name", Name, Optional, "Name of the column. Without this key it is the name of the quantity.")
-            .example(r#""crest""#),
-        key("scale", Quantity(In::Number, Range::ANY), Default("1.0"), "Factor of the recorded values.")
+        key("name", Name, Optional, "Name of the column. Default: the name of the quantity.").example(r#""crest""#),
+        key("scale", Quantity(In::Number, Range::ANY), Default("1.0"), "Factor that multiplies the recorded values.")
             .example("-1.0"),
         key(
             "percentile",
             Quantity(In::Number, PERCENT),
             Optional,
-            "For runout: the percentage of the material points. Without this key it is 100.",
+            "For runout: percentage of the material points whose x is at most the result. Default: 100.",
         )
         .example("99.0"),
         key(
@@ -95,100 +114,89 @@ pub(super) static HISTORY: Table = Table {
             Choice(Side::WORDS),
             Optional,
             "For reaction, contact, gap, slip-rate and friction-power: the face of the grid. For water-outflow: the \
-             face of a drain.",
+             face that is the drain.",
         )
         .example(r#""left""#),
-        key(
-            "drain",
-            Name,
-            Optional,
-            "For water-outflow: name of the drain. Without this key it is the sum of all drains less all inflows.",
-        )
-        .example(r#""river_bed""#),
-        key(
-            "rigid",
-            Name,
-            Optional,
-            "For rigid-force and the other quantities of rigid bodies: name of the rigid body.",
-        )
-        .example(r#""pipe""#),
+        key("drain", Name, Optional, "For water-outflow: name of the drain. Default: all drains minus all inflows.")
+            .example(r#""river_bed""#),
+        key("rigid", Name, Optional, "For the quantities whose name begins with rigid: name of the rigid body.")
+            .example(r#""pipe""#),
         key(
             "of",
             Name,
             Optional,
             "For moment and work: name of a [[prescribed]] displacement or of the [footing]. For reaction, contact, \
-             gap, slip-rate and friction-power it may replace face.",
+             gap, slip-rate and friction-power: alternative to `face`.",
         )
         .example(r#""footing""#),
         key(
             "at_x",
             Quantity(In::Length, Range::ANY),
             Optional,
-            "For height: only material points within half a cell of this x count.",
+            "For height: only material points within half a cell of this x are considered.",
         )
         .example(r#""5 m""#),
         key(
             "at",
             Vector(In::Length, Range::ANY),
             Optional,
-            "Place at the start. For displacement it is the place itself. For velocity, stress, pore-pressure, \
-             excess-pressure, porosity and flux it is the nearest material point.",
+            "Position at the start. A displacement is that of exactly this position. Velocity, stress, pore-pressure, \
+             excess-pressure, porosity and flux are those of the nearest material point.",
         )
         .example("[2.0, 6.0]"),
         key(
             "material",
             Name,
             Optional,
-            "Restricts a quantity of all material points to those of a material. This is possible for mass, \
-             momentum, centre-of-mass, angular-momentum, kinetic-energy, mean-stress, mean-displacement, \
-             mean-velocity, plastic-strain, pore-pressures, pressure-noise, runout, height, max-displacement and \
-             heave.",
+            "Name of a material: only its material points are considered. Possible for mass, momentum, centre-of-mass, \
+             angular-momentum, kinetic-energy, mean-stress, mean-displacement, mean-velocity, plastic-strain, \
+             pore-pressures, pressure-noise, runout, height, max-displacement and heave.",
         )
         .example(r#""clay""#),
         key(
             "body",
             Name,
             Optional,
-            "Restricts the same quantities to the material points of a body, instead of material.",
+            "Alternative to `material`: name of a body. Only its material points are considered.",
         )
         .example(r#""lift_1""#),
-        key("from", Pair(In::Length, Range::ANY), Optional, "For section-forces: beginning of the section.")
+        key("from", Pair(In::Length, Range::ANY), Optional, "For section-forces: beginning of the section line.")
             .example("[2.0, 0.0]"),
-        key("to", Pair(In::Length, Range::ANY), Optional, "For section-forces: end of the section.")
+        key("to", Pair(In::Length, Range::ANY), Optional, "For section-forces: end of the section line.")
             .example("[2.0, 4.0]"),
         key(
             "rectangle",
             loads::RECTANGLE,
             Optional,
-            "For section-forces in 3-D: a rectangle, given as a box without thickness along one axis.",
+            "For section-forces in 3-D: a rectangular section. Both corners have the same coordinate along one axis.",
         )
         .example("{ lower = [2.0, 0.0, 0.0], upper = [2.0, 1.0, 4.0] }"),
-        key("disc", Kind::Table(&loads::DISC), Optional, "For section-forces in 3-D: a disc.")
+        key("disc", Kind::Table(&loads::DISC), Optional, "For section-forces in 3-D: a circular section.")
             .example("{ centre = [0.0, 0.0, 2.0], radius = 1.0 }"),
         key(
             "fixed",
             Flag,
             Optional,
-            "For section-forces: whether the section stays in its place. Without this key it moves with the material \
-             that is at its ends at the start, in 3-D at the ends of its centre lines.",
+            "For section-forces: with true, the section does not move. Without this key its ends (in 3-D the ends of \
+             its centre lines) move with the material that is there at the start.",
         ),
         key(
             "surface",
             Flag,
             Optional,
-            "For velocity, stress and the quantities of pore water: with true the value is that of the place `at`, \
-             also at a surface, from a plane through the values of the neighbouring material points. Without this key \
-             it is the value of the nearest material point, which may be up to half a cell away. If cells differ in \
-             size and the place is inside the material, it is the value of the place.",
+            "For velocity, stress and quantities of pore water: with true, the value at the position `at` is computed \
+             from a plane through the values of the neighbouring material points, also at a surface. Without this key \
+             the value is that of the nearest material point, up to half a cell away. If cells differ in size and the \
+             position is inside the material, the value is always that of the position.",
         ),
         key(
             "box",
             Kind::Table(&body::BOX),
             Optional,
-            "Restricts the same quantities to the material points that are in this box at the time, of the material \
-             or body if one is given. The box does not move. To follow soil, define it as a body and give its name. \
-             If no point is in the box, sums and means are 0 and places are the lower corner of the grid. A check of \
-             a mean or a place then fails.",
+            "Only material points that are in this box at the time of output are considered. The box does not move. It \
+             can be combined with `material` or `body`. To follow soil, define the soil as a body and give `body`. If \
+             no material point is in the box, sums and means are 0, positions are the lower corner of the grid, and a \
+             check of a mean or position fails.",
         )
         .example("{ lower = [0.0, 0.0], upper = [2.0, 2.0] }"),
     ],
@@ -201,8 +209,8 @@ pub(super) static HISTORY: Table = Table {
 
 pub(super) static PROFILE: Table = Table {
     header: "[[profile]]",
-    doc: "Fields at places along a line. The file `profile_NAME.csv` has a row for every time and every place inside \
-          the material.",
+    doc: "Values at positions along a line. The file `profile_NAME.csv` has a row for every output time and every \
+          position inside the material.",
     keys: &[
         key("name", Name, Required, "Name of the profile and of its file.").example(r#""centre_line""#),
         key("from", Vector(In::Length, Range::ANY), Required, "Beginning of the line.").example("[2.0, 0.0]"),
@@ -211,25 +219,23 @@ pub(super) static PROFILE: Table = Table {
             "count",
             Count(1, 1000),
             Required,
-            "Number of equally spaced places, including both ends. With 1 it is the middle.",
+            "Number of equally spaced positions, including both ends. With 1 the position is the middle.",
         )
         .example("25"),
-        key("quantities", Choices(ProfileQuantity::WORDS), Required, "Quantities at each place.")
+        key("quantities", Choices(ProfileQuantity::WORDS), Required, "Quantities that are written for each position.")
             .example(r#"["stress"]"#),
         key(
             "times",
             List(In::Time, Range::POSITIVE),
             Optional,
-            "Times of the rows. Steps end at these times. Without this key they are the start, every frame of \
-             [output], and the end.",
+            "Output times. A step ends at each of them. Default: the start, the frames of [output], and the end.",
         )
         .example("[0.5, 1.0]"),
         key(
             "fixed",
             Flag,
             Default("false"),
-            "Whether the places stay where they are. With false they move with the material that is there at the \
-             start.",
+            "With true, the positions do not move. With false they move with the material that is there at the start.",
         ),
     ],
     exclusive: &[],
@@ -239,14 +245,14 @@ const PERCENT: Range = Range::of(Excluded(0.0), Included(100.0));
 
 pub(super) static CHECK: Table = Table {
     header: "[[check]]",
-    doc: "A bound of a history column at a time. If it is not met, the run ends with an exit code of its own.",
+    doc: "Bounds of a column of history.csv at a given time. If the value is outside, the run ends with exit code 77.",
     keys: &[
-        key("quantity", Name, Required, "Name of a column of the history.").example(r#""max-displacement""#),
+        key("quantity", Name, Required, "Name of a column of history.csv.").example(r#""max-displacement""#),
         key(
             "at",
             Quantity(In::Time, Range::POSITIVE),
             Optional,
-            "Time of the check. A step ends there. Without this key it is the end of the run.",
+            "Time of the check. A step ends at this time. Default: the end of the run.",
         )
         .example("1.0"),
         key("min", Measure, Optional, "Lower bound.").example("0.01"),

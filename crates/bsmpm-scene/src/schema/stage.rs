@@ -7,28 +7,33 @@ use super::{Dimension as In, Kind, Range, Table, key, loads};
 
 pub(super) static STAGE: Table = Table {
     header: "[[stage]]",
-    doc: "A change at a given time, between two steps. Bodies are removed (excavation) or added (fill), loads and \
-          supports are activated or deactivated, supports of the faces of the grid change, and materials follow \
-          another law or lose strength.",
+    doc: "A change at a given time, between two steps. A stage can remove bodies (excavation), add bodies (fill), \
+          activate or deactivate loads and prescribed motions, change supports at faces of the grid, and change the \
+          law or the strength of materials.",
     keys: &[
-        key("name", Text(64), Optional, "Name in the log and in results.").example(r#""excavation""#),
-        key("at", Quantity(In::Time, Range::POSITIVE), Required, "Time at which the stage begins. A step ends there.")
-            .example("1.0"),
-        key("remove", Names, Optional, "Names of the bodies that are removed.").example(r#"["pit_1"]"#),
+        key("name", Text(64), Optional, "Name of the stage in the log and in results.").example(r#""excavation""#),
+        key(
+            "at",
+            Quantity(In::Time, Range::POSITIVE),
+            Required,
+            "Time at which the stage begins. A step ends at this time.",
+        )
+        .example("1.0"),
+        key("remove", Names, Optional, "Names of the bodies that the stage removes.").example(r#"["pit_1"]"#),
         key(
             "add",
             Names,
             Optional,
-            "Names of the bodies that are added. They come with their given shape, without stress and, in flowing \
-             water, without excess pore pressure. Before the stage they are absent.",
+            "Names of the bodies that the stage adds. Before the stage they are absent. An added body has its given \
+             shape, no stress and, with flowing water, no excess pore pressure.",
         )
         .example(r#"["lift_1"]"#),
         key(
             "activate",
             Names,
             Optional,
-            "Names of loads, footings, prescribed displacements, rigid bodies, drains and inflows that act from this \
-             stage on. They have no effect before.",
+            "Names of loads, footings, prescribed displacements, rigid bodies, drains and inflows that have no effect \
+             before this stage, and act from then on.",
         )
         .example(r#"["surcharge"]"#)
         .renamed_from(&["apply"]),
@@ -36,7 +41,7 @@ pub(super) static STAGE: Table = Table {
             "deactivate",
             Names,
             Optional,
-            "Names of loads, footings, prescribed displacements, rigid bodies, drains and inflows that act until \
+            "Names of loads, footings, prescribed displacements, rigid bodies, drains and inflows that cease to act at \
              this stage.",
         )
         .example(r#"["strut"]"#)
@@ -45,15 +50,15 @@ pub(super) static STAGE: Table = Table {
             "boundary",
             Kind::Table(&FACES),
             Optional,
-            "Supports of faces of the grid from this stage on. Other faces stay as they are.",
+            "New supports at faces of the grid. The other faces keep their supports.",
         ),
-        key("materials", Tables(&EXCHANGE), Optional, "Laws that bodies follow from this stage on."),
+        key("materials", Tables(&EXCHANGE), Optional, "Changes of the laws that bodies follow."),
         key(
             "strength_reduction",
             Quantity(In::Number, loads::FACTOR),
             Optional,
-            "Factor by which the strength of all materials is divided from this stage on, as by the factor of \
-             [strength_reduction]. It replaces that factor.",
+            "Factor by which the strength of all materials is divided from this stage on. It replaces the factor of \
+             [strength_reduction].",
         )
         .symbol("F")
         .example("1.3"),
@@ -61,7 +66,7 @@ pub(super) static STAGE: Table = Table {
             "reset_displacements",
             Flag,
             Default("false"),
-            "With true, all reported displacements count from this stage, also those of the footing and of rigid \
+            "With true, this stage resets all reported displacements to zero, also those of the footing and of rigid \
              bodies.",
         ),
     ],
@@ -70,28 +75,31 @@ pub(super) static STAGE: Table = Table {
 
 static FACES: Table = Table {
     header: "boundary = { left, right, front, back, bottom, top }",
-    doc: "Supports as in [boundary], for instance a gate that opens or a wall that is installed.",
+    doc: "New supports, with the words of [boundary]. Examples are a gate that opens and a wall that is installed.",
     keys: &[
         key("left", SUPPORT, Optional, "Support at the face with the lowest x.").example(r#""free""#),
         key("right", SUPPORT, Optional, "Support at the face with the highest x.").example(r#""free""#),
-        key("front", SUPPORT, Optional, "Support at the face with the lowest y, in 3-D.").example(r#""free""#),
-        key("back", SUPPORT, Optional, "Support at the face with the highest y, in 3-D.").example(r#""free""#),
-        key("bottom", SUPPORT, Optional, "Support at the face with the lowest y, in 3-D z.").example(r#""roller""#),
-        key("top", SUPPORT, Optional, "Support at the face with the highest y, in 3-D z.").example(r#""free""#),
+        key("front", SUPPORT, Optional, "Support at the face with the lowest y. Only in 3-D.").example(r#""free""#),
+        key("back", SUPPORT, Optional, "Support at the face with the highest y. Only in 3-D.").example(r#""free""#),
+        key("bottom", SUPPORT, Optional, "Support at the face with the lowest y (in 3-D: the lowest z).")
+            .example(r#""roller""#),
+        key("top", SUPPORT, Optional, "Support at the face with the highest y (in 3-D: the highest z).")
+            .example(r#""free""#),
     ],
     exclusive: &[],
 };
 
 static EXCHANGE: Table = Table {
     header: "materials = [{ from, to }, ...]",
-    doc: "Bodies of one material follow the law of another one from this stage on. They keep their stress and mass.",
+    doc: "From this stage on, all bodies of one material follow the law of another material. Their stress and mass do \
+          not change.",
     keys: &[
-        key("from", Name, Required, "Name of the material of the bodies.").example(r#""clay""#),
+        key("from", Name, Required, "Name of the material that the bodies have in [[body]].").example(r#""clay""#),
         key(
             "to",
             Name,
             Required,
-            "Name of the material whose law they follow. The name of `from` gives them back their first law.",
+            "Name of the material whose law the bodies follow. The name given in `from` restores their first law.",
         )
         .example(r#""treated_clay""#),
     ],

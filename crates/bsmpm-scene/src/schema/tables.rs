@@ -29,50 +29,56 @@ pub static ROOT: Table = Table {
             "accuracy",
             Choice(Accuracy::WORDS),
             Optional,
-            "Chooses the cells, material points, steps and tolerances that the case does not give. It is not \
-             available in 3-D.",
+            "Chooses the cells, material points, steps and tolerances that the case does not give. Not available in \
+             3-D.",
         )
         .example(r#""draft""#),
         key("analysis", Kind::Table(&ANALYSIS), Required, "Type of the analysis and its duration."),
-        key("grid", Kind::Table(&GRID), Required, "The background grid."),
+        key("grid", Kind::Table(&GRID), Required, "The grid of B-splines."),
         key("material", Named(&material::MATERIAL), Required, "Materials, each with a name."),
         key("body", Tables(&body::BODY), Required, "Bodies of soil, which are filled with material points."),
-        key("gravity", Kind::Table(&GRAVITY), Optional, "Body force. Without this table there is none."),
-        key("water", Kind::Table(&water::WATER), Optional, "Water in the ground. Without this table there is none."),
-        key("drain", Tables(&flow::DRAIN), Optional, "A surface through which water flows freely."),
-        key("inflow", Tables(&flow::INFLOW), Optional, "A surface through which water is put into the ground."),
+        key("gravity", Kind::Table(&GRAVITY), Optional, "Gravity. Without this table there is no gravity."),
         key(
-            "shaking",
-            Kind::Table(&loads::SHAKING),
+            "water",
+            Kind::Table(&water::WATER),
             Optional,
-            "Acceleration of the ground. Without this table the ground does not shake.",
+            "Water in the ground. Without this table there is no water.",
         ),
+        key("drain", Tables(&flow::DRAIN), Optional, "A surface through which water flows freely."),
+        key(
+            "inflow",
+            Tables(&flow::INFLOW),
+            Optional,
+            "A surface through which water enters the ground at a given rate.",
+        ),
+        key("shaking", Kind::Table(&loads::SHAKING), Optional, "Acceleration of the ground in an earthquake."),
         key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "Supports at the faces of the grid."),
         key(
             "stabilisation",
             Kind::Table(&STABILISATION),
             Optional,
-            "Method against volumetric locking and oscillating stresses. Without this table there is none.",
+            "Method that prevents volumetric locking and oscillating stresses. Without this table no such method is \
+             used.",
         ),
         key("solver", Kind::Table(&SOLVER), Default("{}"), "Nonlinear iteration and linear solver."),
         key(
             "output",
             Kind::Table(&output::OUTPUT),
             Optional,
-            "Frames for ParaView. Without this table there is one at the start and one at the end of the run.",
+            "Frames for ParaView. Without this table the run writes one frame at the start and one at the end.",
         ),
-        key("history", Tables(&output::HISTORY), Optional, "A column, or several, of history.csv."),
-        key("check", Tables(&output::CHECK), Optional, "A bound of a history column."),
-        key("footing", Kind::Table(&loads::FOOTING), Optional, "A rigid footing with a prescribed displacement."),
+        key("history", Tables(&output::HISTORY), Optional, "A quantity that history.csv records at every step."),
+        key("check", Tables(&output::CHECK), Optional, "Bounds of a column of history.csv."),
+        key("footing", Kind::Table(&loads::FOOTING), Optional, "A rigid footing with a prescribed motion."),
         key(
             "prescribed",
             Tables(&loads::PRESCRIBED),
             Optional,
-            "A prescribed displacement of a face of the grid or of a segment.",
+            "A prescribed motion of the soil at a face of the grid or at a segment.",
         ),
         key("rigid", Tables(&rigid::RIGID), Optional, "A rigid body in frictional contact with the soil."),
-        key("traction", Tables(&loads::TRACTION), Optional, "A stress on the surface of a body."),
-        key("point_load", Tables(&loads::POINT_LOAD), Optional, "A force at a point."),
+        key("traction", Tables(&loads::TRACTION), Optional, "A load per area on the surface of a body."),
+        key("point_load", Tables(&loads::POINT_LOAD), Optional, "A force at a point of a body."),
         key(
             "strength_reduction",
             Kind::Table(&loads::REDUCTION),
@@ -83,7 +89,7 @@ pub static ROOT: Table = Table {
             "initial",
             Kind::Table(&loads::INITIAL),
             Optional,
-            "Stress at the start. Without this table the bodies start without stress.",
+            "Initial stress. Without this table the bodies start without stress.",
         ),
         key(
             "element",
@@ -95,60 +101,62 @@ pub static ROOT: Table = Table {
             "stage",
             Tables(&stage::STAGE),
             Optional,
-            "A change at a given time, for instance an excavation or a lift of fill.",
+            "A change at a given time, for instance an excavation or a layer of fill.",
         ),
-        key("profile", Tables(&output::PROFILE), Optional, "Fields along a line, written to a file."),
+        key("profile", Tables(&output::PROFILE), Optional, "Values along a line, written to a file."),
     ],
     exclusive: &[],
 };
 
 static ANALYSIS: Table = Table {
     header: "[analysis]",
-    doc: "Type of the analysis. A dynamic analysis has inertia (Newmark's method with beta = 1/4 and gamma = 1/2, \
-          unless it is damped). A quasi-static analysis has none, and its time is a pseudo-time without unit. A \
-          quasi-static-rate analysis has no inertia either, but its time is real, for strengths that depend on the \
-          strain rate. A consolidation analysis has no inertia, and water flows in real time.",
+    doc: "Type and duration of the analysis. A dynamic analysis uses Newmark's method with beta = 1/4 and gamma = 1/2, \
+          unless numerical damping is given. The time of a quasi-static analysis is a pseudo-time without unit.",
     keys: &[
-        key("type", Choice(AnalysisType::WORDS), Required, "Whether inertia acts, and what the time means.")
-            .example(r#""dynamic""#),
+        key(
+            "type",
+            Choice(AnalysisType::WORDS),
+            Required,
+            "Type of the analysis, which determines whether inertia acts and what the time means.",
+        )
+        .example(r#""dynamic""#),
         key(
             "end",
             Quantity(In::Time, Range::POSITIVE),
             Optional,
-            "End of the run. It is required, except in quasi-static analyses, which end at 1.0 without it.",
+            "Time at which the run ends. Required, except in quasi-static analyses (default: 1.0).",
         )
         .example(r#""2 s""#),
         key(
             "dt",
             Quantity(In::Time, Range::POSITIVE),
             Optional,
-            "Nominal time step. Without `dt` and `steps`, `accuracy` or `purpose` chooses the steps.",
+            "Nominal time step. If neither `dt` nor `steps` is given, `accuracy` or `purpose` chooses the steps.",
         )
         .symbol("Δt")
         .example(r#""1 ms""#),
-        key("steps", Count(1, 1_000_000_000), Optional, "Number of equal steps, instead of dt.").example("40"),
+        key("steps", Count(1, 1_000_000_000), Optional, "Alternative to `dt`: number of equal steps.").example("40"),
         key(
             "growth",
             Quantity(In::Number, GROWTH),
             Optional,
-            "Ratio of a step to the one before it, in consolidation. The steps grow from dt at the start and after \
-             every stage. Without this key they do not grow.",
+            "Ratio of the sizes of consecutive steps, in consolidation. The first step of the run and of every stage \
+             has the size dt. Without this key the step size is constant.",
         )
         .example("1.2"),
         key(
             "dt_max",
             Quantity(In::Time, Range::POSITIVE),
             Optional,
-            "Largest step that growth may reach. Without this key there is no bound, and without `growth` it has no \
-             effect.",
+            "Upper bound of the step size with `growth`. Without this key there is no bound.",
         )
         .example(r#""10 d""#),
         key(
             "spectral_radius",
             Quantity(In::Number, UP_TO_1),
             Optional,
-            "Spectral radius at infinite frequency of the time integration (WBZ-alpha, second-order accurate). \
-             Smaller values damp high frequencies more. Without this key it is 1, which is no damping.",
+            "Numerical damping, as the spectral radius of the time integration at infinite frequency (WBZ-alpha, \
+             second-order accurate). Smaller values damp high frequencies more. Default: 1 (no damping).",
         )
         .symbol("ρ∞")
         .example("0.8"),
@@ -156,15 +164,15 @@ static ANALYSIS: Table = Table {
             "mass",
             Choice(MassMatrix::WORDS),
             Optional,
-            "Mass matrix of the nodes. Without this key it is consistent in an earthquake, and if all materials are \
-             elastic, as long as nothing is in contact. In all other cases it is lumped.",
+            "Mass matrix. Default: \"consistent\" with [shaking] or if all materials are elastic, unless something is \
+             in contact; otherwise \"lumped\".",
         )
         .example(r#""consistent""#),
         key(
             "wall_velocity",
             Choice(WallVelocity::WORDS),
             Optional,
-            "Velocity of the material points within a cell of a fixed face. Without this key it is \"own\", or \
+            "Velocity of the material points within a cell of a fixed face of the grid. Default: \"own\", or \
              \"relaxed\" for mu-i material with lumped mass.",
         )
         .example(r#""relaxed""#),
@@ -172,17 +180,17 @@ static ANALYSIS: Table = Table {
             "purpose",
             Choice(Purpose::WORDS),
             Optional,
-            "Purpose of the analysis. \"limit-load\" is for a quasi-static analysis under a prescribed displacement. \
-             It chooses the material points, degree, method, steps and tolerances that the case does not give. It \
-             multiplies the stiffness and divides the prescribed displacements by one factor, so that the geometry \
-             stays as drawn.",
+            "Purpose of a quasi-static analysis under a prescribed displacement. \"limit-load\" chooses the material \
+             points, degree, stabilisation, steps and tolerances that the case does not give. It also multiplies the \
+             stiffness and divides the prescribed displacements by the same factor. The stresses stay the same, and \
+             the geometry hardly changes.",
         )
         .example(r#""limit-load""#),
         key(
             "newmark_gamma",
             Quantity(In::Number, GAMMA),
             Optional,
-            "Newmark's gamma, instead of spectral_radius. Values above 0.5 damp high frequencies and reduce the \
+            "Alternative to `spectral_radius`: Newmark's gamma. Values above 0.5 damp high frequencies and reduce the \
              accuracy to first order.",
         )
         .symbol("γ")
@@ -198,33 +206,33 @@ const GAMMA: Range =
 
 static GRID: Table = Table {
     header: "[grid]",
-    doc: "The background grid. It has open knot vectors and one knot span per cell.",
+    doc: "The grid of B-splines. The knot vectors are open, and each cell is a knot span.",
     keys: &[
         key(
             "lower",
             Vector(In::Length, Range::ANY),
             Optional,
-            "Lower corner, where the first cell begins. Required without `knots`.",
+            "Corner with the smallest coordinates. Required without `knots`.",
         )
         .example("[0.0, 0.0]"),
         key(
             "upper",
             Vector(In::Length, Range::ANY),
             Optional,
-            "Upper corner. Required without `knots`. If the length is not a whole number of cells, a free face is \
-             moved outwards.",
+            "Corner with the largest coordinates. Required without `knots`. If the length is not a whole number of \
+             cells, the program enlarges the grid at a free face.",
         )
         .example("[40.0, 12.0]"),
         key(
             "cell",
             Either(In::Length, Range::POSITIVE),
             Optional,
-            "Edge length of the cells, or one length along each axis. Without `cell` and `knots`, `accuracy` chooses \
-             the cells.",
+            "Edge length of the cells: one value, or one along each axis. If neither `cell` nor `knots` is given, \
+             `accuracy` chooses the cells.",
         )
         .symbol("h")
         .example(r#""0.5 m""#),
-        key("knots", Kind::Table(&KNOTS), Optional, "Grid lines, instead of cells of one size."),
+        key("knots", Kind::Table(&KNOTS), Optional, "Alternative to `cell`: grid lines with any spacing."),
         key("degree", Choice(Order::WORDS), Default("\"quadratic\""), "Degree of the B-splines.")
             .symbol("q")
             .example(r#""quadratic""#)
@@ -233,9 +241,8 @@ static GRID: Table = Table {
             "c0_lines",
             Choice(C0Lines::WORDS),
             Default("\"automatic\""),
-            "Grid lines at which strains may jump. \"automatic\" puts them where bodies with different stiffness or \
-             density meet, at the ends of footings and loaded segments, and at corners of rigid bodies. \"none\" \
-             leaves only the lines that knots repeats.",
+            "Grid lines at which strains may jump. \"automatic\" chooses the lines where bodies with different \
+             stiffness or density meet, at the ends of footings and loaded segments, and at corners of rigid bodies.",
         )
         .example(r#""automatic""#),
     ],
@@ -244,8 +251,8 @@ static GRID: Table = Table {
 
 static KNOTS: Table = Table {
     header: "[grid.knots]",
-    doc: "Coordinates of the grid lines, in increasing order. At a line that is listed m times, at most q, the \
-          B-splines of degree q have q - m continuous derivatives.",
+    doc: "Coordinates of the grid lines, in increasing order. A coordinate may be repeated. Where it is listed m \
+          times, at most q, the B-splines of degree q have q - m continuous derivatives.",
     keys: &[
         key("x", List(In::Length, Range::ANY), Required, "Grid lines along x.").example("[0.0, 1.0, 2.0, 4.0]"),
         key("y", List(In::Length, Range::ANY), Required, "Grid lines along y.").example("[0.0, 0.5, 1.0]"),
@@ -262,10 +269,9 @@ static GRAVITY: Table = Table {
             "acceleration",
             Vector(In::Acceleration, Range::ANY),
             Required,
-            "Acceleration of gravity at its full value. A dynamic analysis may incline it, for instance for a chute. \
-             In a quasi-static analysis a horizontal component is a pseudo-static earthquake load: the seismic \
-             coefficient times 9.81 m/s2. Pore pressures and the stress of [initial] follow from the vertical \
-             component alone.",
+            "Full acceleration of gravity. A dynamic analysis may incline it, for instance for a chute. In a \
+             quasi-static analysis a horizontal component is a pseudo-static earthquake load: the seismic coefficient \
+             times 9.81 m/s2. Pore pressures and the stress of [initial] follow from the vertical component only.",
         )
         .symbol("g")
         .example("[0.0, -9.81]"),
@@ -273,8 +279,8 @@ static GRAVITY: Table = Table {
             "ramp",
             Quantity(In::Time, Range::NOT_NEGATIVE),
             Default("0.0"),
-            "Time over which gravity grows to its full value. With 0 it acts at once. With [initial] only the \
-             horizontal component grows, as the vertical one acts from the start.",
+            "Time in which gravity grows from zero to its full value. With 0 full gravity acts at once. With [initial] \
+             only the horizontal component grows; the vertical component acts from the start.",
         )
         .example("1.0"),
     ],
@@ -289,22 +295,32 @@ static BOUNDARY: Table = Table {
             .example(r#""roller""#),
         key("right", loads::SUPPORT, Default("\"free\""), "Support at the face with the highest x.")
             .example(r#""roller""#),
-        key("bottom", loads::SUPPORT, Default("\"free\""), "Support at the face with the lowest y, in 3-D z.")
-            .example(r#""fixed""#),
-        key("top", loads::SUPPORT, Default("\"free\""), "Support at the face with the highest y, in 3-D z.")
-            .example(r#""free""#),
+        key(
+            "bottom",
+            loads::SUPPORT,
+            Default("\"free\""),
+            "Support at the face with the lowest y (in 3-D: the lowest z).",
+        )
+        .example(r#""fixed""#),
+        key(
+            "top",
+            loads::SUPPORT,
+            Default("\"free\""),
+            "Support at the face with the highest y (in 3-D: the highest z).",
+        )
+        .example(r#""free""#),
         key(
             "front",
             loads::SUPPORT,
             Optional,
-            "Support at the face with the lowest y, in 3-D. Without this key it is free.",
+            "Support at the face with the lowest y. Only in 3-D. Default: \"free\".",
         )
         .example(r#""roller""#),
         key(
             "back",
             loads::SUPPORT,
             Optional,
-            "Support at the face with the highest y, in 3-D. Without this key it is free.",
+            "Support at the face with the highest y. Only in 3-D. Default: \"free\".",
         )
         .example(r#""roller""#),
     ],
@@ -313,10 +329,15 @@ static BOUNDARY: Table = Table {
 
 static STABILISATION: Table = Table {
     header: "[stabilisation]",
-    doc: "Method against volumetric locking and oscillating stresses. The theory manual compares the methods.",
-    keys: &[key("method", Choice(Stabilisation::WORDS), Required, "Which volume changes are averaged over the grid.")
-        .example(r#""consistent-f-bar""#)
-        .or_preset()],
+    doc: "Method that prevents volumetric locking and oscillating stresses. The theory manual compares the methods.",
+    keys: &[key(
+        "method",
+        Choice(Stabilisation::WORDS),
+        Required,
+        "Method. The F-bar methods average volume changes over the grid.",
+    )
+    .example(r#""consistent-f-bar""#)
+    .or_preset()],
     exclusive: &[],
 };
 
@@ -328,56 +349,49 @@ static SOLVER: Table = Table {
             "nonlinear",
             Choice(Nonlinear::WORDS),
             Default("\"auto\""),
-            "Method of the nonlinear iteration. \"auto\" is a quasi-Newton method with multiple secants, and \
-             Newton's method if that stalls or, with flowing water, does not converge. \"broyden\" is the paper's \
-             rank-one update. \"newton\" uses the consistent tangent.",
+            "Method of the nonlinear iteration. With flowing water \"auto\" uses Newton's method also if the \
+             quasi-Newton method does not converge.",
         )
         .example(r#""newton""#),
-        key(
-            "tolerance",
-            Quantity(In::Number, FRACTION),
-            Default("1e-8"),
-            "Tolerance of the energy measure of convergence.",
-        )
-        .example("1e-8"),
+        key("tolerance", Quantity(In::Number, FRACTION), Default("1e-8"), "Tolerance of the relative energy residual.")
+            .example("1e-8"),
         key(
             "force_tolerance",
             Quantity(In::Number, FRACTION),
             Default("1e-4"),
-            "Tolerance of the force measure of convergence. A step must meet both.",
+            "Tolerance of the relative force residual. A step must meet both tolerances.",
         )
         .example("1e-4"),
         key(
             "max_iterations",
             Count(1, 100_000),
             Default("200"),
-            "Largest number of iterations in one attempt of a step.",
+            "Largest number of iterations in one attempt to solve a step.",
         )
         .example("200"),
         key(
             "quadrature",
             Choice(Quadrature::WORDS),
             Optional,
-            "Integration weights of the material points: their volumes, or volumes that integrate the splines inside \
-             bodies exactly (quasi-static, not with cubic splines). Without this key they are fitted if different \
-             materials meet at a C0 line and no water flows.",
+            "Integration weights of the material points. Fitted weights are available in quasi-static analyses without \
+             cubic splines. Default: \"fitted\" if different materials meet at a C0 line and no water flows.",
         )
         .example(r#""fitted""#),
         key(
             "extension",
             Choice(ExtendedSplines::WORDS),
             Optional,
-            "Extended B-splines in nearly empty cells at the surface of bodies. Without this key it is \"linear\", \
-             but \"off\" in dynamic analyses and with cubic splines.",
+            "Extended B-splines, which stabilise nearly empty cells at the surface of bodies. Default: \"linear\", but \
+             \"off\" in dynamic analyses and with cubic splines.",
         )
         .example(r#""linear""#),
         key(
             "background",
             Quantity(In::Number, UP_TO_1),
             Optional,
-            "Artificial elastic stiffness of occupied cells, as a part of the largest Young's modulus in the cell. \
-             Without this key it is 1e-4 in quasi-static and 0 in dynamic analyses. Values above 1e-4 make ground \
-             under permanent loads too strong.",
+            "Fictitious elastic stiffness of all cells with material, as a fraction of the largest Young's modulus in \
+             the cell. Default: 1e-4 in quasi-static and 0 in dynamic analyses. Values above 1e-4 make ground under \
+             permanent loads too strong.",
         )
         .example("1e-4"),
         key("background_kind", Choice(BACKGROUND_KIND), Retired, "the background always resists strain"),
@@ -386,15 +400,15 @@ static SOLVER: Table = Table {
             "linear",
             ChoiceOr(LinearSolver::WORDS, &LINEAR),
             Default("{}"),
-            "The linear solver, by a word or by PETSc's names. Without this key the number of unknowns decides. \
-             PETSc options after `--` on the command line take precedence.",
+            "Linear solver: a word, or a table with PETSc's names. Without this key the program chooses by the number \
+             of unknowns. PETSc options after `--` on the command line take precedence.",
         )
         .example(r#""direct""#),
         key(
             "reproducible",
             Flag,
             Default("true"),
-            "Whether every run on the same number of ranks gives the same result to the last bit. PETSc's direct \
+            "With true, repeated runs on the same number of ranks have bitwise identical results. PETSc's direct \
              solvers then factorise the whole system on each rank.",
         ),
     ],
@@ -406,29 +420,29 @@ const UP_TO_1: Range = Range::of(Included(0.0), Included(1.0));
 
 static LINEAR: Table = Table {
     header: "linear = { ksp, pc, factor }",
-    doc: "The linear solver by PETSc's names.",
+    doc: "Linear solver by PETSc's names.",
     keys: &[
         key(
             "ksp",
             Choice(Option::<Ksp>::WORDS),
             Optional,
-            "Iterative method. Without this key, or with \"auto\", it is the one that the preconditioner needs.",
+            "Iterative method. Default, also for \"auto\": the method that the preconditioner needs.",
         )
         .example(r#""cg""#),
         key(
             "pc",
             Choice(Option::<Pc>::WORDS),
             Optional,
-            "Preconditioner or direct solver. Without this key, or with \"auto\", it is \"cholesky\", or \"gamg\" \
-             for very many unknowns.",
+            "Preconditioner or direct solver. Default, also for \"auto\": \"cholesky\", or \"gamg\" where multigrid is \
+             faster.",
         )
         .example(r#""gamg""#),
         key(
             "factor",
             Choice(Factor::WORDS),
             Optional,
-            "Package of a direct solver. Without this key it is \"dissection\" for \"cholesky\" and \"mumps\" for \
-             other solvers.",
+            "Software package of a direct solver. Default: \"dissection\" for \"cholesky\", \"mumps\" for other direct \
+             solvers.",
         )
         .example(r#""mumps""#),
     ],

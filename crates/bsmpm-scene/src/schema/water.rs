@@ -7,40 +7,40 @@ use crate::words::{Drainage, Word};
 
 pub(super) static WATER: Table = Table {
     header: "[water]",
-    doc: "Water in and above the ground. Stresses of the soil are then effective stresses. The program adds \
-          buoyancy, seepage forces and the water pressure on submerged surfaces. Ground below the level or the \
-          phreatic line is saturated. Above it the pore pressure of hydrostatic soil is zero, and coupled soil has \
-          suction.",
+    doc: "Water in and above the ground. With this table the stresses of the soil are effective stresses. The program \
+          applies buoyancy, seepage forces and the water pressure on submerged surfaces. Ground below the water table \
+          is saturated. Above it the pore pressure is zero in \"hydrostatic\" soil, and negative (suction) in \
+          \"coupled\" soil.",
     keys: &[
         key(
             "level",
             Quantity(In::Length, Range::ANY),
             Optional,
-            "Height of the water table, in the ground or above it.",
+            "Height of the water table, which may be above the ground.",
         )
         .example(r#""6 m""#),
         key(
             "level_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY)]),
             Optional,
-            "Rows [t, y] of a level that changes, instead of level, with t increasing. The level is interpolated \
-             linearly, and is constant before the first row and after the last.",
+            "Alternative to `level`: time-dependent water table, in rows [t, y] with increasing t. The height is \
+             linear between the rows, and constant before and after them.",
         )
         .example(r#"[[0.0, 8.0], ["5 d", 2.0]]"#),
         key(
             "line",
             Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY)]),
             Optional,
-            "Rows [x, y] of a phreatic line, instead of level, with x increasing. The line is interpolated linearly \
-             and is horizontal beyond its ends. The pore pressure is that of the depth vertically below it.",
+            "Alternative to `level`: a phreatic line, in rows [x, y] with increasing x. The line is linear between the \
+             rows, and horizontal beyond its ends. The pore pressure is that of the vertical depth below the line.",
         )
         .example("[[0.0, 3.0], [20.0, 8.0]]"),
         key(
             "line_path",
             Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY), (In::Length, Range::ANY)]),
             Optional,
-            "Rows [t, x, y] of a phreatic line that changes, instead of line. All times have the same places x. The \
-             line is interpolated linearly in time, and is constant before the first time and after the last.",
+            "Alternative to `level`: time-dependent phreatic line, in rows [t, x, y]. All times have the same x. The \
+             line is linear between the times, and constant before and after them.",
         )
         .example(r#"[[0.0, 0.0, 3.0], [0.0, 20.0, 8.0], ["1 d", 0.0, 3.0], ["1 d", 20.0, 5.0]]"#),
         key(
@@ -63,15 +63,15 @@ pub(super) static WATER: Table = Table {
             "suction",
             Quantity(In::Stress, Range::NOT_NEGATIVE),
             Optional,
-            "Largest suction above the water table at the start, in materials with a retention curve. Without this \
-             key the suction is hydrostatic.",
+            "Upper bound of the initial suction above the water table, in materials with a retention curve. Without \
+             this key the suction has no bound.",
         )
         .example(r#""20 kPa""#),
         key(
             "drainage",
             Choice(Drainage::WORDS),
             Optional,
-            "Drainage of the materials that do not give theirs. Without this key it is \"hydrostatic\".",
+            "Drainage of all materials without a `drainage` of their own. Default: \"hydrostatic\".",
         )
         .example(r#""coupled""#),
     ],

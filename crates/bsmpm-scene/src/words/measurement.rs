@@ -3,15 +3,15 @@
 choice! {
     /// What a history records, without what it needs besides, which [`Quantity`](crate::Quantity) has.
     pub enum Measurement {
-        /// The coordinate x that `percentile` per cent of the material points do not exceed. It is a coordinate: the
-        /// initial length of the body is not subtracted, and in 3-D it is x and no radius. For the run-out of a flow
-        /// use `percentile = 99`, because single material points and a thin tip run ahead.
+        /// The coordinate x that `percentile` per cent of the material points do not exceed, also in 3-D. The initial
+        /// length of the body is not subtracted. For the run-out of a flow use `percentile = 99`, because single
+        /// material points and a thin tip run ahead.
         Runout = "runout",
-        /// Position of the front: the largest x of the lowest occupied row of cells at which the material points fill
-        /// half of a cell. On finer grids it does not converge if the tip is thin. For a run-out use `runout` with
+        /// Position x of the front. In the lowest row of cells with material, the last cell before the front is at
+        /// least half full. With a thin tip the position does not converge on finer grids; use `runout` with
         /// `percentile = 99`.
         Front = "front",
-        /// The largest y of all material points, or of those within half a cell of `at_x`. It is 0 if there are none.
+        /// The largest y of all material points, or of those within half a cell of `at_x`. 0 without material points.
         Height = "height",
         /// The largest displacement of all material points.
         MaxDisplacement = "max-displacement",
@@ -19,7 +19,7 @@ choice! {
         Mass = "mass",
         /// Momentum.
         Momentum = "momentum",
-        /// Centre of mass. Without material it is the lower corner of the grid.
+        /// Centre of mass. If there is no material: the lower corner of the grid.
         CentreOfMass = "centre-of-mass",
         /// Angular momentum about the origin, positive counter-clockwise.
         AngularMomentum = "angular-momentum",
@@ -33,53 +33,54 @@ choice! {
         MeanVelocity = "mean-velocity",
         /// Accumulated plastic strain, the sum of sqrt(2/3) times the norm of the deviatoric plastic strain increments.
         PlasticStrain = "plastic-strain",
-        /// Forces of the effective stress across the line from `from` to `to`, which the material on the right of the
-        /// line exerts on that on its left. Parts of the line outside the body do not count. In 3-D the section is a
-        /// `rectangle` or a `disc`, and the material on the side of the positive normal axis acts on that on the other
-        /// side. The axes t1 and t2 follow the normal axis in the cyclic order x, y, z, and rotate with the section.
+        /// Forces of the effective stress on a section: the line from `from` to `to`, in 3-D a `rectangle` or `disc`.
+        /// Parts outside the body do not count. The forces act on the material to the left of the line, in 3-D on the
+        /// material before the section (on the side of the negative normal axis). The axes t1 and t2 follow the normal
+        /// axis in the cyclic order x, y, z, and rotate with the section.
         SectionForces = "section-forces",
         /// Mass that has left the grid through faces with outflow since the start.
         Outflow = "outflow",
-        /// Force that the support at a face, a footing or a prescribed displacement exerts on the body. A node at the
-        /// edge of two supported faces counts for the face that its force is normal to. Where a footing or prescribed
-        /// displacement meets a fixed face, the nodes of the edge count for the face. In water it is the force of the
-        /// effective stress and of the excess pore pressure.
+        /// Force of a supported face, footing or prescribed displacement on the soil. At a common edge of two supported
+        /// faces each force component belongs to the face that is normal to this component. At a common edge of a fixed
+        /// face and a footing or prescribed displacement the force belongs to the face. In water the force is that of
+        /// the effective stress and the excess pore pressure.
         Reaction = "reaction",
         /// Moment of the reaction force of a footing or prescribed displacement about its centre, positive counter-
         /// clockwise.
         Moment = "moment",
-        /// Work of a footing or prescribed displacement on the body since the start, from the mean force of every step.
+        /// Work of a footing or prescribed displacement on the soil since the start, computed with the mean force of
+        /// every step.
         Work = "work",
-        /// Displacement of the material that is at `at` at the start, extrapolated from the nearest material point.
+        /// Displacement of the material that is initially at `at`, extrapolated from the nearest material point.
         Displacement = "displacement",
-        /// Velocity of the material point that is nearest to `at` at the start, or with `surface` of the place itself.
+        /// Velocity of the material point that is initially nearest to `at`; with `surface`, velocity at `at`.
         Velocity = "velocity",
-        /// Cauchy stress of the material point that is nearest to `at` at the start, positive in tension, or with
-        /// `surface` of the place itself.
+        /// Cauchy stress, positive in tension, of the material point that is initially nearest to `at`; with `surface`,
+        /// stress at `at`.
         Stress = "stress",
-        /// Pore pressure at the material point that is nearest to `at` at the start, positive in compression.
+        /// Pore pressure, positive in compression, at the material point that is initially nearest to `at`.
         PorePressure = "pore-pressure",
-        /// Pore pressure of all material points, or of those of a material or body, positive in compression.
+        /// Pore pressures, positive in compression, of all material points, or those of a material or body.
         PorePressures = "pore-pressures",
-        /// Pore pressure minus the hydrostatic pressure of the present water level, at the material point that is
-        /// nearest to `at` at the start, where water flows.
+        /// Excess pore pressure (pore pressure minus hydrostatic pressure of the present water level) at the material
+        /// point that is initially nearest to `at`.
         ExcessPressure = "excess-pressure",
-        /// Porosity at the material point that is nearest to `at` at the start, where water flows.
+        /// Porosity at the material point that is initially nearest to `at`, with pore-water flow.
         Porosity = "porosity",
         /// Darcy velocity (volume of water per area and time, relative to the soil) at the material point that is
-        /// nearest to `at` at the start. At the surface of strongly deformed ground it can differ by a third and more
-        /// from cell to cell. The outflow through drains has no such error.
+        /// initially nearest to `at`. At the surface of strongly deformed ground the values of adjacent cells can
+        /// differ by a third or more. `water-outflow` does not have this error.
         Flux = "flux",
-        /// Volume of water that has left the ground through a drain since the start. Without the name of a drain it is
-        /// the sum of all drains less all inflows.
+        /// Volume of water that has left the ground through a drain since the start. Without `drain` it is the volume
+        /// through all drains minus the volume of all inflows.
         WaterOutflow = "water-outflow",
-        /// Relative error of the water balance: the sum of what the ground has gained and what has left it since the
-        /// start, divided by the larger of the two flows. It is 0 if no water is lost.
+        /// Relative error of the water balance: water stored in the ground since the start plus water that has left it,
+        /// divided by the larger of the two volumes. It is 0 if no water is created or lost.
         WaterBalance = "water-balance",
-        /// Oscillation of the vertical stress between neighbouring material points: root mean square over the mean of
-        /// |sigma_yy|.
+        /// Oscillation of the vertical stress between neighbouring material points: its root mean square, divided by
+        /// the mean of |sigma_yy|.
         StressNoise = "stress-noise",
-        /// Oscillation of the pressure between neighbouring material points: root mean square over the material points.
+        /// Oscillation of the pressure between neighbouring material points: its root mean square.
         PressureNoise = "pressure-noise",
         /// The largest upward displacement of all material points.
         Heave = "heave",
@@ -89,23 +90,23 @@ choice! {
         FootingForce = "footing-force",
         /// Downward displacement of the footing.
         Penetration = "penetration",
-        /// The largest distance that the material has slipped from the footing in the step, divided by the displacement
-        /// of the footing in it.
+        /// Largest slip of the material along the footing in the step, divided by the displacement of the footing in
+        /// the step.
         Slip = "slip",
-        /// State of a face, footing or segment in contact: the part of its nodes near material that are closed, and the
-        /// part of its normal force where material slides.
+        /// Contact of a face, footing or segment: fraction of its nodes near material at which the contact is closed,
+        /// and fraction of its normal force at which material slides.
         Contact = "contact",
-        /// The least and the largest distance of the material from a face, footing or segment in contact, over its
-        /// nodes with material in their cells. It is 0 without such nodes, and before the first step.
+        /// Smallest and largest distance of the material from the nodes of a face, footing or segment in contact. Only
+        /// nodes with material in their cells count. Without such nodes, and before the first step, the values are 0.
         Gap = "gap",
-        /// Sliding velocity of the material along a face, footing or segment in contact: mean over the step, weighted
+        /// Sliding velocity of the material along a face, footing or segment in contact: mean of the step, weighted
         /// with the normal force.
         SlipRate = "slip-rate",
-        /// Power that friction at a face, footing or segment in contact dissipates: mean over the step.
+        /// Power that friction dissipates at a face, footing or segment in contact: mean of the step.
         FrictionPower = "friction-power",
         /// Force of the soil on a rigid body.
         RigidForce = "rigid-force",
-        /// Moment of that force about the reference point of the body, positive counter-clockwise.
+        /// Moment of the soil on a rigid body about its reference point, positive counter-clockwise.
         RigidMoment = "rigid-moment",
         /// Displacement of the reference point of a rigid body.
         RigidDisplacement = "rigid-displacement",
@@ -113,13 +114,13 @@ choice! {
         RigidRotation = "rigid-rotation",
         /// Velocity of the reference point of a rigid body.
         RigidVelocity = "rigid-velocity",
-        /// Sliding distance of the soil along the outline of a rigid body: the sum over the steps of the mean slip,
+        /// Accumulated sliding distance of the soil along the outline of a rigid body. The slip of each step is a mean,
         /// weighted with the normal force.
         RigidSlip = "rigid-slip",
-        /// The least distance of the soil from a rigid body. It is 0 if they touch, and before the first step.
+        /// Smallest distance of the soil from a rigid body. It is 0 in contact, and before the first step.
         RigidGap = "rigid-gap",
-        /// Work of a rigid body on the soil since the start, including friction. It follows from the mean force of
-        /// every step, in dynamic analyses from the force at its end.
+        /// Work of a rigid body on the soil since the start, including friction. It is computed with the mean force of
+        /// every step, in dynamic analyses with the force at the end of the step.
         RigidWork = "rigid-work",
         /// Energy balance since the start: external = change of kinetic + change of elastic + plastic + numerical +
         /// closure.
@@ -136,14 +137,14 @@ const STRESS_IN_SPACE: &[(&str, &str)] =
     &[STRESS[0], STRESS[1], ("-zz", "normal to z"), ("-xy", "shear"), ("-yz", "shear"), ("-xz", "shear")];
 const SECTION: &[(&str, &str)] = &[
     ("-n", "normal force, positive in tension"),
-    ("-q", "shear force along the line, on the material on its left"),
+    ("-q", "shear force along the line, on the material to the left of the line"),
     ("-m", "bending moment about the centre of the line (N m/m), positive if the side of `to` is in tension"),
 ];
 const SECTION_IN_SPACE: &[(&str, &str)] = &[
     SECTION[0],
     ("-q1", "shear force along t1, on the material before the section"),
     ("-q2", "shear force along t2, on the material before the section"),
-    ("-t", "torsion (N m) about the normal through the centre of the section, on the material before it"),
+    ("-t", "torsional moment (N m) about the normal through the centre, on the material before the section"),
     ("-m1", "bending moment about the centre (N m), positive if the side of positive t1 is in tension"),
     ("-m2", "bending moment about the centre (N m), positive if the side of positive t2 is in tension"),
 ];
@@ -151,11 +152,11 @@ const RANGE: &[(&str, &str)] =
     &[("-mean", "mean, weighted with the present volumes"), ("-least", "least value"), ("-largest", "largest value")];
 const STRAIN: &[(&str, &str)] = &[("-mean", "mean, weighted with the present volumes"), ("-largest", "largest value")];
 const NOISE: &[(&str, &str)] = &[
-    ("-average", "deviation from the average over the grid"),
+    ("-average", "deviation from a local average over the grid"),
     ("-plane", "deviation from a plane through the neighbouring material points"),
 ];
 const CONTACT: &[(&str, &str)] =
-    &[("-closed", "part of the nodes that are closed"), ("-sliding", "part of the normal force that slides")];
+    &[("-closed", "fraction of the nodes that are closed"), ("-sliding", "fraction of the normal force that slides")];
 const GAP: &[(&str, &str)] = &[("-least", "least value"), ("-largest", "largest value")];
 const ENERGY: &[(&str, &str)] = &[
     ("-kinetic", "kinetic energy of the material points"),
@@ -163,14 +164,14 @@ const ENERGY: &[(&str, &str)] = &[
     ("-plastic", "dissipation by plastic flow, damping and seepage"),
     (
         "-external",
-        "work of gravity, loads and prescribed displacements, minus the dissipation of friction at faces and of absorbing boundaries",
+        "work of gravity, loads and prescribed displacements, minus dissipation by friction at faces and by absorbing boundaries",
     ),
-    ("-numerical", "numerical dissipation: the sum of the next five columns"),
-    ("-transfer", "dissipation of the transfer between material points and nodes"),
-    ("-integration", "dissipation of the integration in time and along the strain path"),
-    ("-smoothing", "dissipation of the averaging of the elastic strain"),
-    ("-background", "dissipation of the artificial stiffness"),
-    ("-penalty", "dissipation of the penalty of footings and prescribed displacements"),
+    ("-numerical", "numerical dissipation, the sum of transfer, integration, smoothing, background and penalty"),
+    ("-transfer", "dissipation by the transfer between material points and nodes"),
+    ("-integration", "dissipation by the integration in time and along the strain path"),
+    ("-smoothing", "dissipation by the averaging of elastic strains"),
+    ("-background", "dissipation by the fictitious stiffness `solver.background`"),
+    ("-penalty", "dissipation by the penalty method at footings and prescribed displacements"),
     ("-closure", "residual of the balance: work of the out-of-balance forces, and round-off"),
 ];
 

@@ -8,15 +8,15 @@ choice! {
         BackgroundWork = "background-work",
         /// Energy that the numerical method dissipates.
         EnergyLoss = "energy-loss",
-        /// Noise in the history of a force.
+        /// Scatter in the history of a force.
         ForceNoise = "force-noise",
         /// Distance of a material interface from its grid line.
         InterfaceShift = "interface-shift",
-        /// The same for an interface between soils of different permeability.
+        /// Distance of an interface between soils of different permeability from its grid line.
         PermeabilityShift = "permeability-shift",
         /// Penetration of material into a rigid body.
         RigidPenetration = "rigid-penetration",
-        /// Distance that a material point moves in one dynamic step.
+        /// Displacement of a material point in one dynamic step.
         StepAdvance = "step-advance",
         /// Spurious velocity of material points next to fixed faces.
         WallVelocity = "wall-velocity",
@@ -32,18 +32,18 @@ choice! {
         Q = "q",
         /// Principal Cauchy stresses in Pa, in descending order, positive in tension.
         PrincipalStresses = "principal-stresses",
-        /// Mobilised strength 1/F, with the factor F by which the strength may be divided until the stress reaches the
-        /// yield surface. It is 1 at yield, and 0 for a law without strength.
+        /// Mobilised strength 1/F: the stress reaches the yield surface if the strength is divided by F. It is 1 at
+        /// yield, and 0 for a law without strength.
         MobilisedStrength = "mobilised-strength",
         /// Deviatoric logarithmic strain since the start, sqrt(2/3 e:e).
         DeviatoricStrain = "deviatoric-strain",
-        /// 1 where the stress is on the yield surface (within 1e-4 of the strength), 0 elsewhere.
+        /// 1 if the stress is on the yield surface (within 1e-4 of the strength), otherwise 0.
         Yielding = "yielding",
         /// Present density in kg/m3.
         Density = "density",
         /// Pore pressure in Pa, positive in compression.
         PorePressure = "pore-pressure",
-        /// Pore pressure minus the hydrostatic pressure of the present water level, in Pa, where water flows.
+        /// Excess pore pressure in Pa: pore pressure minus hydrostatic pressure of the present water level.
         ExcessPressure = "excess-pressure",
         /// Darcy velocity in m/s: volume of water per area and time, relative to the soil.
         Flux = "flux",
@@ -53,7 +53,7 @@ choice! {
         Saturation = "saturation",
         /// Total stress in Pa: effective stress minus pore pressure, positive in tension.
         TotalStress = "total-stress",
-        /// Number of the body in the order of the case. The names are in run.json and in the frame.
+        /// Number of the body in the order of the case. run.json and the frame contain the names.
         Body = "body",
     }
 }
@@ -113,7 +113,7 @@ choice! {
         PlasticStrain = "plastic-strain",
         /// Pore pressure in Pa, positive in compression.
         PorePressure = "pore-pressure",
-        /// Pore pressure minus the hydrostatic pressure of the present water level, in Pa, where water flows.
+        /// Excess pore pressure in Pa: pore pressure minus hydrostatic pressure of the present water level.
         ExcessPressure = "excess-pressure",
     }
 }

@@ -8,32 +8,32 @@ use bsmpm::step::mass::MassMatrix;
 use bsmpm::water::flow::PermeabilityLaw;
 
 words! { MassMatrix {
-    Lumped = "lumped": "Lumped (diagonal) mass matrix, as in the paper.",
-    Consistent = "consistent": "Consistent mass matrix (95 %), blended with the lumped one (5 %).",
+    Lumped = "lumped": "Lumped (diagonal) mass matrix.",
+    Consistent = "consistent": "Sum of 95 % of the consistent and 5 % of the lumped mass matrix.",
 } }
 
 words! { WallVelocity {
-    Own = "own": "Material points keep their velocity, as in the paper.",
-    Relaxed = "relaxed": "While a point moves by a quarter of a cell, its velocity relaxes to its displacement per time.",
+    Own = "own": "Material points keep their velocity.",
+    Relaxed = "relaxed": "The velocity of a material point is adjusted gradually to its displacement rate, over a quarter of a cell.",
 } }
 
 words! { Stabilisation {
     None = "none": "No stabilisation: the plain B-spline method.",
-    FBar = "f-bar": "F-bar method: volume changes of the step are averaged.",
-    FBarZhao = "f-bar-zhao": "F-bar method of Zhao: total volume changes are averaged.",
-    ModifiedFBar = "modified-f-bar": "Modified F-bar method of the paper: after every step the elastic strains are averaged as well.",
-    ConsistentFBar = "consistent-f-bar": "F-bar method with averages over B-splines of the next lower degree and consistent forces.",
-    SubgridFBar = "subgrid-f-bar": "Consistent F-bar method with averages over pairs of cells.",
+    FBar = "f-bar": "F-bar method: averages the volume changes of the step.",
+    FBarZhao = "f-bar-zhao": "F-bar method of Zhao: averages the volume changes since the start.",
+    ModifiedFBar = "modified-f-bar": "F-bar method of Xie et al. (2023), which also averages the elastic strains after every step.",
+    ConsistentFBar = "consistent-f-bar": "F-bar method with consistent forces. Averages over B-splines of the next lower degree.",
+    SubgridFBar = "subgrid-f-bar": "F-bar method with consistent forces. Averages over pairs of cells.",
 } }
 
 words! { Quadrature {
-    Points = "points": "The volumes of the material points.",
-    Fitted = "fitted": "Volumes that integrate the splines inside bodies exactly.",
+    Points = "points": "Volumes of the material points.",
+    Fitted = "fitted": "Fitted weights, which integrate the splines inside bodies exactly.",
 } }
 
 words! { ExtendedSplines {
     Off = "off": "No extension: all functions are unknowns.",
-    Linear = "linear": "Functions of nearly empty cells continue the displacement of the nearest full cell linearly.",
+    Linear = "linear": "Nearly empty cells continue the displacement of the nearest full cell linearly.",
 } }
 
 words! { PermeabilityLaw {

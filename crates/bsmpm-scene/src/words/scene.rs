@@ -8,7 +8,7 @@ choice! {
     pub enum Geometry {
         /// Plane strain. Forces, masses and energies are per metre of thickness.
         PlaneStrain = "plane-strain",
-        /// Axisymmetry about the axis x = 0, without torsion: x is the radius, y the axial coordinate, and zz the
+        /// Axisymmetry about the axis x = 0, without torsion. x is the radius, y the axial coordinate, and zz the
         /// circumferential component. Forces, masses and energies in histories are those of the whole circle.
         Axisymmetric = "axisymmetric",
         /// Three dimensions. The axis z is vertical.
@@ -77,9 +77,9 @@ choice! {
         Dynamic = "dynamic",
         /// Without inertia, in pseudo-time.
         QuasiStatic = "quasi-static",
-        /// Without inertia, in real time, for strengths that depend on the strain rate.
+        /// Without inertia, in real time. For a strength that depends on the strain rate.
         InTime = "quasi-static-rate",
-        /// Without inertia, in real time, with flowing water.
+        /// Without inertia, in real time. Pore water flows.
         Consolidation = "consolidation",
     } earlier ["quasi-static-in-time": "quasi-static-rate"]
 }
@@ -104,7 +104,7 @@ choice! {
     pub enum Drainage {
         /// The pore pressure is that of the water table. The soil has no excess pore pressure.
         Given = "hydrostatic",
-        /// Water flows in the pores. The excess pore pressure is an unknown.
+        /// Pore water flows. The excess pore pressure is an unknown of the analysis.
         Coupled = "coupled",
         /// Water does not flow relative to the soil. The excess pore pressure follows from the change of volume.
         Undrained = "undrained",
@@ -116,9 +116,9 @@ choice! {
 choice! {
     /// How fast the ground fails, beside how fast its water flows.
     pub enum Failure {
-        /// Slow failure: every material point keeps its pore pressure.
+        /// Slow failure: the pore pressure of each material point is constant.
         Drained = "drained",
-        /// Fast failure: water does not flow, and the pore pressure changes with the strain.
+        /// Fast failure: pore water does not flow, and the pore pressure changes with the strain.
         Undrained = "undrained",
     }
 }
@@ -126,7 +126,7 @@ choice! {
 choice! {
     /// What a case looks for, which chooses settings that it leaves out.
     pub enum Purpose {
-        /// The load at which the ground fails under a prescribed displacement, as in limit analysis.
+        /// Computes the load at which the ground fails under a prescribed displacement.
         LimitLoad = "limit-load",
     }
 }
@@ -136,7 +136,7 @@ choice! {
     pub enum Accuracy {
         /// Coarse, for a first look.
         Draft = "draft",
-        /// About as fine as the discretisations of the paper.
+        /// About as fine as the grids of Xie et al. (2023).
         Standard = "standard",
         /// Fine, as a reference for other runs.
         Reference = "reference",
@@ -169,7 +169,7 @@ impl Order {
 choice! {
     /// Which grid lines are those across which strains may jump.
     pub enum C0Lines {
-        /// Lines at the places where strains jump.
+        /// Lines where the program expects jumps of the strains.
         Automatic = "automatic",
         /// Only lines that `knots` repeats.
         None = "none",
@@ -183,13 +183,13 @@ choice! {
         Fixed = "fixed",
         /// The normal displacement is zero.
         Roller = "roller",
-        /// A smooth wall that transmits pressure and no tension, so that material can separate from it. A table gives
-        /// it friction.
+        /// A smooth wall that carries pressure but no tension: material can separate from the wall. A table adds
+        /// friction.
         Contact = "contact",
-        /// A viscous boundary that absorbs waves, in dynamic analyses. It carries the stress of `[initial]`.
+        /// A viscous boundary that absorbs waves, in dynamic analyses. The boundary carries the stress of `[initial]`.
         Absorbing = "absorbing",
-        /// A lateral boundary of ground that shakes, in dynamic analyses. A column of soil gives the free-field motion.
-        /// It drives the boundary, and dashpots absorb the waves that differ from it.
+        /// A lateral boundary of shaken ground, in dynamic analyses. The free-field motion of a soil column drives the
+        /// boundary. Dashpots absorb all other waves.
         FreeField = "free-field",
         /// No support. Material that leaves the grid there is counted and removed.
         Outflow = "outflow",
@@ -205,13 +205,13 @@ choice! {
         Left = "left",
         /// Face with the highest x.
         Right = "right",
-        /// Face with the lowest y, in 3-D z.
+        /// Face with the lowest y (in 3-D: the lowest z).
         Bottom = "bottom",
-        /// Face with the highest y, in 3-D z.
+        /// Face with the highest y (in 3-D: the highest z).
         Top = "top",
-        /// Face with the lowest y, in 3-D.
+        /// Face with the lowest y. Only in 3-D.
         Front = "front",
-        /// Face with the highest y, in 3-D.
+        /// Face with the highest y. Only in 3-D.
         Back = "back",
     }
 }
@@ -293,8 +293,7 @@ choice! {
 choice! {
     /// How the stress at the start is brought into equilibrium.
     pub enum Settled {
-        /// Equilibrium with the laws of the materials, so that no stress is outside its yield surface. Displacements
-        /// stay zero.
+        /// Equilibrium with the laws of the materials: no stress is outside the yield surface. Displacements stay zero.
         Plastic = "plastic",
     }
 }
@@ -302,15 +301,15 @@ choice! {
 choice! {
     /// What is held in a test of one point.
     pub enum Path {
-        /// The total stresses along x and z are constant, and y is prescribed.
+        /// The total stresses along x and z are constant. The strain or stress along y is prescribed.
         Triaxial = "triaxial",
-        /// The total stress along x and the strain along z are constant, and y is prescribed.
+        /// The total stress along x and the strain along z are constant. The strain or stress along y is prescribed.
         Biaxial = "biaxial",
-        /// The strains along x and z are zero, and y is prescribed.
+        /// The strains along x and z are zero. The strain or stress along y is prescribed.
         Oedometer = "oedometer",
-        /// All directions are prescribed alike.
+        /// The same strain or stress is prescribed in all directions.
         Isotropic = "isotropic",
-        /// The total stress along y is constant, the strains along x and z are zero, and the shear strain is
+        /// The total stress along y is constant, and the strains along x and z are zero. The shear strain or stress is
         /// prescribed.
         SimpleShear = "simple-shear",
         /// Each component is prescribed as a strain or as a stress.

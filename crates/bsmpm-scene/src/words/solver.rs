@@ -3,9 +3,9 @@
 choice! {
     /// The non-linear iteration.
     pub enum Nonlinear {
-        /// Quasi-Newton method with multiple secants, and Newton's method if it stalls.
+        /// Quasi-Newton method with multiple secants. If it stalls, Newton's method follows.
         Auto = "auto",
-        /// Broyden's rank-one update, as in the paper.
+        /// Broyden's method (rank-one update).
         Broyden = "broyden",
         /// Newton's method with the consistent tangent.
         Newton = "newton",
@@ -19,11 +19,11 @@ choice! {
         Direct = "direct",
         /// Conjugate gradients with PETSc's algebraic multigrid.
         Multigrid = "multigrid",
-        /// One application of an incomplete Cholesky factorisation of each rank's block, as an approximate solution.
+        /// Approximate solution by an incomplete Cholesky factorisation of each rank's block, applied once.
         IncompleteCholesky = "incomplete-cholesky",
-        /// Two cycles of PETSc's algebraic multigrid, as an approximate solution.
+        /// Approximate solution by two cycles of PETSc's algebraic multigrid.
         MultigridCycles = "multigrid-cycles",
-        /// Two cycles of geometric multigrid over the B-splines, as an approximate solution. Only for 3-D on one rank.
+        /// Approximate solution by two cycles of geometric multigrid over the B-splines. Only in 3-D on one rank.
         SplineMultigrid = "spline-multigrid",
     }
 }
@@ -77,7 +77,7 @@ choice! {
         Ml = "ml",
         /// Preconditioners of hypre.
         Hypre = "hypre",
-        /// Geometric multigrid of bsmpm over the B-splines. Only for 3-D on one rank.
+        /// Geometric multigrid over the B-splines, built into bsmpm. Only in 3-D on one rank.
         SplineMultigrid = "spline-multigrid",
     }
 }
