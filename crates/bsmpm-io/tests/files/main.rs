@@ -1,4 +1,4 @@
-//! Tests that the files of a run give bitwise identical values when read.
+//! Tests that values read from the files of a run are bitwise identical to those that were written.
 
 mod checkpoint;
 mod directory;

@@ -252,7 +252,7 @@ pub(crate) static MATERIAL: Table = Table {
             Choice(Match::WORDS),
             Optional,
             "Stress state in which drucker-prager has the strength of mohr-coulomb. Default: \"plane-strain\". The \
-             program warns if the strengths differ.",
+             program warns if this state does not suit the geometry.",
         )
         .example(r#""plane-strain""#)
         .renamed_from(&["match"]),
