@@ -1,5 +1,5 @@
-//! Presets: the key `accuracy` chooses missing cells, theory-manual equation (T11.1), steps (T11.2) and tolerances. The
-//! completed case is then compared with the schema.
+//! Presets: the key `accuracy` chooses the cell size, theory-manual equation (T11.1), the steps (T11.2) and the
+//! tolerances that the case does not give. The completed case is then compared with the schema.
 
 mod axis;
 mod cells;

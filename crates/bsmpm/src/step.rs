@@ -1,5 +1,5 @@
-//! One load or time step from t to t + dt (chapter 1 of the theory manual). Step numbers are those of Xie, Navas and
-//! López-Querol (2023), section 2.4.
+//! One load or time step from t to t + dt (chapter 1 of the theory manual). The numbers (1) to
+//! (11) are those of the algorithm in Xie, Navas and López-Querol (2023), section 2.4.
 
 pub mod adjoint;
 pub mod apart;

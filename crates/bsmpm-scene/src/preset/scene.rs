@@ -1,4 +1,5 @@
-//! Collects the data of a case from which a preset (key `accuracy`) chooses missing cells and steps.
+//! Collects the data of a case from which a preset (key `accuracy`) chooses the cell size and the step size, if the case
+//! does not give them.
 
 use super::Preset;
 use super::rigid::{self, RigidExtent};

@@ -1,4 +1,4 @@
-//! Rows of the table of features (`tests/features.rs`): lines of a case for each feature.
+//! Features of the table in `tests/features.rs`. Each feature has lines that are added to a case to test the feature.
 
 /// A feature as what it adds to a block of soil.
 pub struct Feature {

@@ -1,4 +1,4 @@
-//! Tests that SIMD and single evaluation of a step agree bitwise.
+//! Tests that a step gives bitwise identical results with vector instructions (SIMD) and point by point.
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis};
